@@ -171,7 +171,7 @@ TEST(CompareCells, SaysWhereTheMeanIsOnTheOtherSideOfMostRuns) {
 }
 
 // Two cells without difference, in nine of ten studies at least no false word at 10 %.
-TEST(CompareCells, SaysNothingFalseMoreOftenThanItsLevel) {
+TEST(CompareCells, SlowSaysNothingFalseMoreOftenThanItsLevel) {
   const std::vector<const Score*> chosen = scores({"position_rmse"});
   std::size_t false_words = 0;
   constexpr std::size_t kStudies = 400;

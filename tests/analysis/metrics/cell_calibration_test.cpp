@@ -44,7 +44,7 @@ TEST(CellCalibration, NamesWhatIsWrongWithAFilter) {
 }
 
 // A cell has 12 tests, of up to 30; 5 % of cells at most have a fault in any: 3 standard errors.
-TEST(CellCalibration, FindsFaultWithAPerfectFilterInFivePercentOfStudies) {
+TEST(CellCalibration, SlowFindsFaultWithAPerfectFilterInFivePercentOfStudies) {
   constexpr std::uint64_t kCells = 400;
   double rejected = 0.0;
   for (std::uint64_t seed = 0; seed < kCells; ++seed) {
@@ -117,7 +117,7 @@ double faulted(std::size_t M, double weight_sigma) {
 
 // There are 24 tests in each of 60 studies: five standard errors of 5 % are 2.9 %. The Gaussian of
 // the moments would find fault with a perfect sampler of ten draws in a third of them.
-TEST(CellCalibration, DoesNotHoldFewDrawsAgainstAPerfectSampler) {
+TEST(CellCalibration, SlowDoesNotHoldFewDrawsAgainstAPerfectSampler) {
   EXPECT_LT(faulted(10, 0.0), 0.05 + 0.029);
   EXPECT_LT(faulted(30, 0.0), 0.05 + 0.029);
   EXPECT_LT(faulted(10, 0.7), 0.05 + 0.029);

@@ -262,7 +262,7 @@ TEST(SamplerLevel, JudgesNothingByThreeDrawsAndCountsThem) {
 }
 
 // Thousand runs of ten scans: a mean of 10,000 chi-squares has a standard error of 0.025.
-TEST(SamplerLevel, KnowsThatUnevenWeightsAreFewerDraws) {
+TEST(SamplerLevel, SlowKnowsThatUnevenWeightsAreFewerDraws) {
   for (const double sigma : {0.5, 1.0}) {
     const JudgedSampler found =
         judged_sampler({.draws = 100, .within = 0.1, .weight_sigma = sigma}, 2, 1000);

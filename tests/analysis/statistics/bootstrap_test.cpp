@@ -105,7 +105,7 @@ TEST(Bootstrap, CountsTiesHalf) {
 }
 
 // 400 studies: one standard error is 0.011.
-TEST(Bootstrap, HoldsTheMeanAsOftenAsItSaysAndMakesUpForSkewness) {
+TEST(Bootstrap, SlowHoldsTheMeanAsOftenAsItSaysAndMakesUpForSkewness) {
   EXPECT_NEAR(coverage(normals, 20, 5.0), 0.95, 0.04);
   EXPECT_NEAR(coverage(normals, 60, 5.0), 0.95, 0.04);
   // The plain percentile interval holds the mean of 20 exponentials in 90 % of studies.
@@ -192,7 +192,7 @@ double false_calls(std::size_t runs, P p_of) {
 }
 
 // At most 5 %, five standard errors allowed; and near it where the distribution is fine enough.
-TEST(PairedTests, KeepTheirLevel) {
+TEST(PairedTests, SlowKeepTheirLevel) {
   const double error = std::sqrt(0.05 * 0.95 / 2000.0);
   const auto rank = [](const std::vector<double>& d) { return signed_rank_test(d).p; };
   const auto sign = [](const std::vector<double>& d) {

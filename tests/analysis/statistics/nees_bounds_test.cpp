@@ -129,7 +129,7 @@ void expect_promise_kept(const PlantedLaw& law, std::size_t scans, double power)
 }
 
 // MONTECARTA_STUDIES=2000 gives the table of STATISTICS 17.
-TEST(NeesPlan, IsWhatSimulatedStudiesHave) {
+TEST(NeesPlan, SlowIsWhatSimulatedStudiesHave) {
   for (const std::size_t dimension : {1u, 2u, 3u, 6u}) {
     expect_promise_kept({.dimension = dimension, .memory = Memory::constant, .ratio = 1.5}, 2, 0.9);
     expect_promise_kept({.dimension = dimension, .memory = Memory::constant, .ratio = 0.6}, 2, 0.9);
@@ -152,7 +152,7 @@ TEST(NeesPlan, AnswersForEveryDimension) {
   }
 }
 
-TEST(NeesPlan, ShowsAConsistentFilterAtLeastAsOftenAsItSays) {
+TEST(NeesPlan, SlowShowsAConsistentFilterAtLeastAsOftenAsItSays) {
   const NeesPlan plan({.dimension = 3, .scans = 20});
   const std::uint64_t runs = plan.runs_to_show(1.2, 0.8);
   const double shown = share_of_studies(100, [&](std::uint64_t study) {

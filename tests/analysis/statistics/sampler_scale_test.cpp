@@ -33,7 +33,7 @@ double ideal_nees(std::size_t particles, RngStream& draw) {
 EffectiveDraws equal(double particles) { return {particles, particles}; }
 
 // 20,000 draws: a share has a standard error of at most 0.0036.
-TEST(SamplerScale, MakesTheNeesOfIdealSamplersChiSquare) {
+TEST(SamplerScale, SlowMakesTheNeesOfIdealSamplersChiSquare) {
   const SamplerScale scale(3);
   for (const std::size_t particles : {6u, 10u, 100u}) {
     const EffectiveDraws draws = equal(static_cast<double>(particles));

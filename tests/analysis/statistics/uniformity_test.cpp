@@ -41,7 +41,7 @@ double share_of(Calibration verdict, std::size_t n, double inflation, double bia
 }
 
 // The joint probability of the band is exact. 2000 studies, 4 standard errors.
-TEST(Uniformity, RaisesFalseAlarmsAtTheStatedLevel) {
+TEST(Uniformity, SlowRaisesFalseAlarmsAtTheStatedLevel) {
   for (const std::size_t n : {20u, 100u, 1000u}) {
     const double rate = 1.0 - ecdf_band(n, 0.95).joint;
     EXPECT_LE(rate, 0.05);
@@ -53,7 +53,7 @@ TEST(Uniformity, RaisesFalseAlarmsAtTheStatedLevel) {
 
 // A p-value of 10 % or less is as rare as that, or a little rarer because counts are whole. 2000
 // studies, 4 standard errors.
-TEST(Uniformity, HasPValuesThatAreUniform) {
+TEST(Uniformity, SlowHasPValuesThatAreUniform) {
   const EcdfBand band = ecdf_band(100, 0.95);
   std::map<double, double> shares = {{0.02, 0.0}, {0.1, 0.0}, {0.5, 0.0}};
   for (std::uint64_t study = 0; study < kStudies; ++study) {
@@ -68,7 +68,7 @@ TEST(Uniformity, HasPValuesThatAreUniform) {
   }
 }
 
-TEST(Uniformity, NamesTheFaultOfErrors) {
+TEST(Uniformity, SlowNamesTheFaultOfErrors) {
   EXPECT_GT(share_of(Calibration::too_narrow, 200, 1.6, 0.0), 0.95);
   EXPECT_GT(share_of(Calibration::too_wide, 200, 0.6, 0.0), 0.95);
   EXPECT_GT(share_of(Calibration::shifted, 200, 1.0, 0.6), 0.95);

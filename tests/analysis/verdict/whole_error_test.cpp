@@ -91,7 +91,7 @@ WholeError with_missing(const PlantedLaw& law, std::uint64_t study, std::uint64_
   return sums;
 }
 
-TEST(WholeError, RejectsAConsistentFilterSeldomWhereSamplesAreMissing) {
+TEST(WholeError, SlowRejectsAConsistentFilterSeldomWhereSamplesAreMissing) {
   for (const Memory memory : {Memory::white, Memory::constant}) {
     const double rejected = share_of_studies(200, [&](std::uint64_t study) {
       const WholeError sums = with_missing({.memory = memory}, study, 60, 0.3);

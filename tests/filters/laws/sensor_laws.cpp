@@ -120,7 +120,7 @@ TEST_P(EveryFilterAndSensor, BuildsAMapNearTheTruthAndCountsItsInnovations) {
 
 /// The law is of joint filters, since particles run out of diversity. The band has five standard
 /// errors.
-TEST_P(EveryFilterAndSensor, IsConsistentOnAnEasyWorld) {
+TEST_P(EveryFilterAndSensor, SlowIsConsistentOnAnEasyWorld) {
   if (kind().reports.particles) GTEST_SKIP() << "no joint covariance";
   constexpr std::uint64_t kRuns = 60;
   EXPECT_TRUE(is_consistent(final_errors(*make(), settings(100, 60), kRuns).anees, kRuns));
