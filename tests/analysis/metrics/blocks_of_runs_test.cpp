@@ -76,7 +76,7 @@ void write_simulated(const std::filesystem::path& path) {
                     .final_map = true,
                     .joint = true};
     plan.scenario = {{"kind", "scripted"}, {"noise", "matched"}, {"association.kind", "known"}};
-    for (Cell& cell : plan.cells) cell.joint = true;
+    for (Cell& cell : plan.cells) cell.reports.joint = true;
   });
 }
 

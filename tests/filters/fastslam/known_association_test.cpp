@@ -8,6 +8,8 @@
 namespace montecarta::filters {
 namespace {
 
+const StepContext kContext(0, 0, 0, Parallel::serial());
+
 /// Two particles, of which the first one is at the true pose.
 class TwoParticles : public testing::Test {
  protected:
@@ -19,11 +21,11 @@ class TwoParticles : public testing::Test {
   bool look(const Pose& pose) {
     const Point landmark{15.0, 12.0};
     const Detection seen{linearised_detection(belief_.sensor, pose, landmark)->value(0), 0.0, 0};
-    return waiting_.advance(seen, {pose, {pose.x, pose.y + kBeside, pose.heading}});
+    return waiting_.advance(kContext, seen, {pose, {pose.x, pose.y + kBeside, pose.heading}});
   }
   std::array<LandmarkGaussian<double>, 2> place() {
     std::array<LandmarkGaussian<double>, 2> blocks{};
-    waiting_.place(0, blocks);
+    waiting_.place(kContext, 0, blocks);
     return blocks;
   }
 
@@ -62,7 +64,7 @@ TEST_F(TwoParticlesOfBearings, InitialiseFromTheFirstAndTheOneBehindThatWhichCro
 TEST_F(TwoParticlesOfBearings, PassTheirPosesOnToTheirDescendants) {
   look({0, 0, 0});
   look({8, 0, 0});
-  waiting_.resample(std::array<std::uint32_t, 2>{1, 1});
+  waiting_.resample(kContext, std::array<std::uint32_t, 2>{1, 1});
   ASSERT_TRUE(look({9, 0, 0.1}));
   // The ray of the ancestor, half a metre to the left, cuts that of the true pose elsewhere.
   const auto [first, second] = place();
