@@ -16,8 +16,8 @@ std::optional<std::size_t> terminal_width(int descriptor);
 std::size_t output_width(int descriptor = 1);
 
 /// Breaks `text` between words so that no line is longer than `width` characters, unless it is a
-/// single word. A number and its " %" are one word. Each line of `text` is a paragraph: it keeps its
-/// leading spaces, and its further lines are indented by `hang` more. A line that fits is not
+/// single word. A number and its " %" are one word. Each line of `text` is a paragraph: it keeps
+/// its leading spaces, and its further lines are indented by `hang` more. A line that fits is not
 /// changed. Every line ends in a line break.
 std::string wrapped(std::string_view text, std::size_t width, std::size_t hang = 0);
 

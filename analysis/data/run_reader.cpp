@@ -21,7 +21,7 @@ bool RunReader::has(std::string_view column, std::size_t i) const {
 }
 
 std::size_t RunReader::scans_of(std::size_t i) const {
-  return drive_met_by(*file_, file_->runs()[i]).scan_times.size();
+  return drive_of_run(*file_, file_->runs()[i]).scan_times.size();
 }
 
 void RunReader::keep_scans(std::size_t width, std::size_t i, std::vector<double>& rows) const {
@@ -50,7 +50,7 @@ void RunReader::read_at_scans(std::string_view column, std::size_t width, std::s
 }
 
 void RunReader::read_path(std::size_t i, std::vector<double>& out) const {
-  if (drive_met_by(*file_, file_->runs()[i]).references.empty()) return out.clear();
+  if (drive_of_run(*file_, file_->runs()[i]).references.empty()) return out.clear();
   out.resize(file_->times().size() * 3);
   const bool mixture = has("pose_mean_mixture", i);
   file_->read(*cell_, mixture ? "pose_mean_mixture" : "pose_mean", i, std::span(out));

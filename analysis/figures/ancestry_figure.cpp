@@ -17,9 +17,9 @@ using Branch = AncestryTree::Branch;
 constexpr std::size_t kNoBranch = AncestryTree::kNone;
 
 /// Walks from the last scan to the first; `alive` are the branches that are being followed.
-class Walk {
+class BranchTracer {
  public:
-  Walk(AncestryTree& tree, std::size_t particles, std::size_t most, double end)
+  BranchTracer(AncestryTree& tree, std::size_t particles, std::size_t most, double end)
       : tree_(tree), child_count_(particles), open_(particles, kNoBranch) {
     tree_.particles = particles;
     tree_.leaves = std::min(particles, most);
@@ -120,7 +120,7 @@ AncestryTree ancestry_tree(std::span<const std::uint32_t> ancestor, std::size_t 
   expect(ancestor.size() == times.size() * particles, "ancestors are {scan, particle}");
   AncestryTree tree;
   if (times.empty() || particles == 0 || most == 0) return tree;
-  Walk walk(tree, particles, most, times.back());
+  BranchTracer walk(tree, particles, most, times.back());
   for (std::size_t s = times.size(); s-- > 0 && !walk.is_over();) {
     walk.step_back(ancestor.subspan(s * particles, particles), s == 0 ? 0.0 : times[s - 1]);
   }
@@ -147,7 +147,7 @@ std::vector<DrawnTree> drawn_trees(const ResultFile& file, std::size_t run) {
     if (cell.particles < 2 || !file.holds(cell, "ancestor", run)) continue;
     if (file.status(cell)[run] != RunStatus::complete) continue;
     const RunRows rows = read_run(file, cell, run);
-    const auto times = drive_met_by(file, file.runs()[run]).scan_times;
+    const auto times = drive_of_run(file, file.runs()[run]).scan_times;
     drawn.push_back({cell.label, c,
                      ancestry_tree(rows.ancestor, cell.particles, times, kMostLeaves),
                      times.back()});

@@ -31,7 +31,7 @@ StoredMap::StoredMap(const ResultFile& file, const StoredCell& cell, std::size_t
   covariance_.resize(4 * seen_.size());
   landmarks_ = column->shape.back();
   scans_ = landmarks_ == 0 ? 0 : seen_.size() / landmarks_;
-  scans_ = std::min(scans_, drive_met_by(file, file.runs()[run]).scan_times.size());
+  scans_ = std::min(scans_, drive_of_run(file, file.runs()[run]).scan_times.size());
   file.read(cell, prefix + "seen", run, std::span(seen_));
   file.read(cell, prefix + "mean", run, std::span(mean_));
   file.read(cell, prefix + "covariance", run, std::span(covariance_));
@@ -161,7 +161,7 @@ std::vector<double> ellipse_row(const Ellipse& e) { return {e.x, e.y, e.major, e
 
 FigureData recorded_path(const ResultFile& file, const StoredCell& cell, const RunRows& run) {
   FigureData data{"path_" + cell.label + ".csv", {"time [s]", "x [m]", "y [m]"}, {}};
-  const auto times = drive_met_by(file, run.run).scan_times;
+  const auto times = drive_of_run(file, run.run).scan_times;
   const auto& mean = estimate_of(run).mean;
   const std::size_t stride = 1 + times.size() / kMostRecorded;
   for (std::size_t s = 0; s < times.size(); s += stride) {
@@ -226,7 +226,7 @@ FigureData map_data(const ResultFile& file, const StoredCell& cell, std::size_t 
 }
 
 FigureData fix_data(const ResultFile& file, std::size_t run_index) {
-  const auto references = drive_met_by(file, file.runs()[run_index]).references;
+  const auto references = drive_of_run(file, file.runs()[run_index]).references;
   if (references.empty()) return {"fixes.csv", {"time [s]", "x [m]", "y [m]"}, {}};
   const ReferencePath& path = references.front();
   FigureData data{"fixes_" + path.name + ".csv", {"time [s]", "x [m]", "y [m]"}, {}};

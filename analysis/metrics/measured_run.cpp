@@ -239,7 +239,7 @@ MapCriteria map_criteria_of(const ResultFile& file) {
   return criteria;
 }
 
-DriveCriteria criteria_of_drive(const MetDrive& drive) {
+DriveCriteria criteria_of_drive(const RunDrive& drive) {
   DriveCriteria criteria{drive.scan_times, {}, {}};
   for (const ReferencePath& path : drive.references) {
     criteria.references.emplace_back(path, drive.scan_times, drive.start);
@@ -275,7 +275,7 @@ RunCriteria criteria_of(const ResultFile& file, double level, double within) {
     criteria.judged_fixes.emplace_back(path, file.scan_times(), file.description().start);
   }
   for (std::size_t run = 0; run < file.description().drives.size(); ++run) {
-    criteria.drives.push_back(criteria_of_drive(drive_met_by(file, run)));
+    criteria.drives.push_back(criteria_of_drive(drive_of_run(file, run)));
   }
   if (!criteria.drives.empty()) {
     criteria.references = criteria.drives.front().references;

@@ -14,7 +14,7 @@ namespace montecarta::analysis {
 namespace {
 
 /// [s] of the first scan at or after a step, or of the last one.
-double scan_time(const MetDrive& drive, std::uint32_t step) {
+double scan_time(const RunDrive& drive, std::uint32_t step) {
   const auto scan = std::ranges::lower_bound(drive.scan_steps, step) - drive.scan_steps.begin();
   return drive.scan_times[std::min(static_cast<std::size_t>(scan), drive.scan_steps.size() - 1)];
 }
@@ -56,7 +56,7 @@ std::vector<std::size_t> complete_runs(const ResultFile& file, const StoredCell&
     if (status[i] == RunStatus::failed) {
       file.expect_whole(stored, i);
       cell.failures.push_back({file.runs()[i], steps[i], reasons[i],
-                               scan_time(drive_met_by(file, file.runs()[i]), steps[i])});
+                               scan_time(drive_of_run(file, file.runs()[i]), steps[i])});
     }
   }
   const auto looks = looks_in(file.study_text(), file.study_runs());
@@ -102,7 +102,7 @@ std::vector<CellSums> sums_of_tasks(const std::vector<CellTask>& tasks, const Ru
 
 /// What the study in the file says, by a function of its text.
 template <class Read>
-auto told_by(const ResultFile& file, Read read) {
+auto read_study(const ResultFile& file, Read read) {
   try {
     return read(file.study_text());
   } catch (const StudyError& error) {
@@ -111,7 +111,7 @@ auto told_by(const ResultFile& file, Read read) {
 }
 
 double margin_of(const ResultFile& file, std::optional<double> within) {
-  return within ? *within : told_by(file, margin_in);
+  return within ? *within : read_study(file, margin_in);
 }
 
 void expect_scans(const ResultFile& file) {

@@ -29,7 +29,8 @@ RecordLayout::RecordLayout(const Cell& cell, const ColumnSelection& selection,
       scans_(itinerary.scans()),
       particles_(cell.particles),
       landmarks_(cell.landmarks) {
-  if (selection.joint && cell.reports.joint) joint_scans_ = joint_scans_of(scans_, selection.joint_scans);
+  if (selection.joint && cell.reports.joint)
+    joint_scans_ = joint_scans_of(scans_, selection.joint_scans);
   const AxisLengths lengths{.time = scans_only_ ? scans_ : itinerary.steps(),
                             .scan = scans_,
                             .joint = joint_scans_.size(),

@@ -28,10 +28,10 @@ std::string_view defect_of(const PoseEstimate* estimate) {
 }
 
 /// The progress of a run from step to step.
-class Walk {
+class RunStepper {
  public:
-  Walk(const RunConditions& conditions, SlamFilter& filter, Recorder& recorder,
-       std::size_t particles)
+  RunStepper(const RunConditions& conditions, SlamFilter& filter, Recorder& recorder,
+             std::size_t particles)
       : conditions_(conditions), filter_(filter), recorder_(recorder), particles_(particles) {}
 
   void start() { filter_.start(conditions_.itinerary.start); }
@@ -71,7 +71,7 @@ RunEnd run_one(const RunConditions& conditions, SlamFilter& filter, Recorder& re
   record.clear();
   recorder.expect_scans(conditions.itinerary.scans());
   const CpuClock clock;
-  Walk walk(conditions, filter, recorder, record.layout().particles());
+  RunStepper walk(conditions, filter, recorder, record.layout().particles());
   try {
     for (walk.start(); !walk.arrived(); walk.next()) {
       if (conditions.stop.is_set()) return RunEnd::dropped;

@@ -84,7 +84,7 @@ OrphanGuard::OrphanGuard() {
   line_ = ends[1];
 }
 
-void OrphanGuard::tell(pid_t signed_group) const {
+void OrphanGuard::send(pid_t signed_group) const {
   if (line_ < 0) return;
   // Raises no signal if the guard was killed.
   while (::send(line_, &signed_group, sizeof signed_group, MSG_NOSIGNAL) < 0 && errno == EINTR) {

@@ -24,15 +24,15 @@ class OrphanGuard {
   OrphanGuard(const OrphanGuard&) = delete;
   OrphanGuard& operator=(const OrphanGuard&) = delete;
 
-  void guard(pid_t group) const { tell(group); }
+  void guard(pid_t group) const { send(group); }
   /// Must be called before the leader of the group is waited for, because its number may belong to
   /// another process afterwards.
-  void release(pid_t group) const { tell(-group); }
+  void release(pid_t group) const { send(-group); }
 
  private:
   OrphanGuard();
   ~OrphanGuard() = default;  // the socket is closed when the process ends
-  void tell(pid_t signed_group) const;
+  void send(pid_t signed_group) const;
 
   int line_ = -1;  ///< -1 if the system could not start a process; then nothing is guarded
 };

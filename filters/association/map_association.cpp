@@ -33,7 +33,8 @@ Pairing MapAssociation::pairing_by_identity(const Detection& detection) const {
 
 void MapAssociation::pair_nearest(Scan scan, std::span<const NearestSearch> searches) {
   pairings_.clear();
-  for (const NearestSearch& search : searches) pairings_.push_back(judge(search, settings_));
+  for (const NearestSearch& search : searches)
+    pairings_.push_back(decide_pairing(search, settings_));
   exclude_rivals(pairings_);
   counts_ = association_counts(scan, pairings_, made_of_);
 }

@@ -25,7 +25,7 @@ double* count_of(std::int32_t identity, const Pairing& pairing,
 
 }  // namespace
 
-Pairing judge(const NearestSearch& search, const AssociationSettings& settings) {
+Pairing decide_pairing(const NearestSearch& search, const AssociationSettings& settings) {
   if (search.least_cost < std::numeric_limits<double>::infinity()) {
     return {PairingKind::matched, search.landmark, search.least_cost};
   }

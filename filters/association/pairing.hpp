@@ -30,7 +30,7 @@ struct Pairing {
 };
 
 /// The search for the landmark that explains one detection best (EQUATIONS 17): offer() every
-/// landmark of the map, always in the same order, then judge().
+/// landmark of the map, always in the same order, then decide_pairing().
 struct NearestSearch {
   double least_distance = std::numeric_limits<double>::infinity();  ///< D^2 over all offered
   double least_cost = std::numeric_limits<double>::infinity();  ///< ND over those inside the gate
@@ -48,7 +48,7 @@ struct NearestSearch {
 
 /// Matches the landmark of least cost inside the gate. Without one, the detection is fresh if the
 /// nearest landmark is beyond the outer gate or the map is empty, else it is ignored.
-Pairing judge(const NearestSearch& search, const AssociationSettings& settings);
+Pairing decide_pairing(const NearestSearch& search, const AssociationSettings& settings);
 
 /// If several detections matched the same landmark, only the one of least cost keeps it and the
 /// others are ignored. Of equal costs the first wins.

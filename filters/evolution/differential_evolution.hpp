@@ -212,11 +212,11 @@ template <class Real, std::size_t D>
 }
 
 /// One synchronous generation: all trials are made from the old members before any is replaced.
-template <class Real, std::size_t D, class Judge>
+template <class Real, std::size_t D, class Evaluate>
 void next_generation(Population<Real, D> population, std::size_t generation,
                      const Ranking<Real, D>& ranking, const SearchBox<Real, D>& box,
                      const EvolutionSettings& settings, const EvolutionDraws& draws,
-                     EvolutionScratch<Real, D>& scratch, const Judge& judge) {
+                     EvolutionScratch<Real, D>& scratch, const Evaluate& evaluate) {
   const std::size_t size = population.size();
   const auto goes_on = ranking.goes_on(settings);
   for (std::size_t i = 0; i < size; ++i) {
@@ -224,7 +224,7 @@ void next_generation(Population<Real, D> population, std::size_t generation,
     const TrialDraws<Real, D> chance(draws, static_cast<std::uint32_t>(block), size, i);
     scratch.trials[i] = trial(population, i, ranking.leader.best, box, settings, chance);
   }
-  judge(std::span(std::as_const(scratch.trials)), std::span(scratch.trial_fitness));
+  evaluate(std::span(std::as_const(scratch.trials)), std::span(scratch.trial_fitness));
   for (std::size_t i = 0; i < size; ++i) {
     const auto moves_in = goes_on && scratch.trial_fitness[i] >= scratch.fitness[i];
     for (std::size_t j = 0; j < D; ++j)
@@ -251,20 +251,20 @@ class OneByOne {
 };
 
 /// Differential evolution (EQUATIONS 9): moves `population` towards greater fitness and returns the
-/// best member. `judge(candidates, fitness)` writes the fitness of a candidate for each member;
+/// best member. `evaluate(candidates, fitness)` writes the fitness of a candidate for each member;
 /// lanes that it never writes stop before the first generation. If `Real` is Lanes, every lane
 /// evolves its own population with its own random numbers. Members must lie in `box`. With fewer
 /// members than least_population() nothing moves. Allocates only when `scratch` has to grow.
-template <class Real, std::size_t D, class Judge>
+template <class Real, std::size_t D, class Evaluate>
 Evolved<Real, D> evolve(std::span<std::array<Real, D>> population, const SearchBox<Real, D>& box,
                         const EvolutionSettings& settings, const EvolutionDraws& draws,
-                        EvolutionScratch<Real, D>& scratch, const Judge& judge) {
+                        EvolutionScratch<Real, D>& scratch, const Evaluate& evaluate) {
   scratch.start(population.size());
-  judge(std::span<const std::array<Real, D>>(population), std::span(scratch.fitness));
+  evaluate(std::span<const std::array<Real, D>>(population), std::span(scratch.fitness));
   evolution::Ranking<Real, D> ranking(population, scratch.fitness);
   if (population.size() < least_population(settings.base)) return ranking.leader;
   for (std::size_t g = 0; g < settings.generations && any(ranking.goes_on(settings)); ++g) {
-    evolution::next_generation(population, g, ranking, box, settings, draws, scratch, judge);
+    evolution::next_generation(population, g, ranking, box, settings, draws, scratch, evaluate);
     ranking = evolution::Ranking<Real, D>(population, scratch.fitness);
   }
   return ranking.leader;

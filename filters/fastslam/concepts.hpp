@@ -27,27 +27,28 @@ concept CarriesPoses = requires(const T t, MotionIncrement& motion, PoseGaussian
   // Moves by one control step of `duration`.
   t.advance(motion, Control(), /*duration*/ 0.1, belief);
   // Updates the pose with one detection and returns the innovation before the update.
-  { t.refine(pose, landmark, seen, R, Everywhere(), evidence) } -> Is<Innovation<Real>>;
+  { t.refine(pose, landmark, seen, R, AllLanes(), evidence) } -> Is<Innovation<Real>>;
   // True if refine_in_batch() can refine a pose by a whole scan with fixed Jacobians.
   { T::kRefinesInBatch } -> std::convertible_to<bool>;
 };
 
 /// The form in which `MapTransform` keeps a landmark.
 template <class MapTransform, class Real>
-using HeldBy = decltype(std::declval<const MapTransform&>().initialise(
+using LandmarkStateOf = decltype(std::declval<const MapTransform&>().initialise(
     BasicPose<Real>(), RangeBearing<Real>(), SensorNoise()));
 
 /// Keeps landmarks, like those two: each as a LandmarkGaussian or in a form that gaussian_of()
 /// converts to one for poses, weights and association. The form is a struct of Reals, and its
 /// default `{}`, a landmark that was never observed, must give a finite Gaussian.
 template <class T, class Real>
-concept KeepsLandmarks = requires(const T t, const BasicPose<Real>& pose, HeldBy<T, Real>& landmark,
+concept KeepsLandmarks = requires(const T t, const BasicPose<Real>& pose,
+                                  LandmarkStateOf<T, Real>& landmark,
                                   const RangeBearing<Real>& seen, const SensorNoise& R,
                                   Evidence<Real>& evidence) {
   // Initialises a landmark from a known pose.
   t.initialise(pose, seen, R);
   // Updates it with one detection from a known pose and returns the innovation before the update.
-  { t.update(landmark, pose, seen, R, Everywhere(), evidence) } -> Is<Innovation<Real>>;
+  { t.update(landmark, pose, seen, R, AllLanes(), evidence) } -> Is<Innovation<Real>>;
   { gaussian_of(landmark) } -> std::convertible_to<LandmarkGaussian<Real>>;
 };
 

@@ -64,12 +64,12 @@ class EvolvedProposal : public RefinedCloud<Real, SigmaPoints, SigmaPoints> {
     if (settings_.mode == EvolutionMode::unbiased) return;
     for (std::size_t b = 0; b < predicted.size(); ++b) centres_[b] = predicted[b].mean;
     if (association.matches() == 0) return;
-    const auto aim = settings_.mode == EvolutionMode::as_printed
-                         ? CloudEvolution<Real>::Aim::likelihood
-                         : CloudEvolution<Real>::Aim::posterior;
+    const auto objective = settings_.mode == EvolutionMode::as_printed
+                               ? CloudEvolution<Real>::Objective::likelihood
+                               : CloudEvolution<Real>::Objective::posterior;
     cloud_.gather(context, association, weights, predicted, this->noise());
-    cloud_.evolve(aim, settings_.bounds, settings_.evolution, context.identity(Draw::evolution, 0),
-                  centres_);
+    cloud_.evolve(objective, settings_.bounds, settings_.evolution,
+                  context.identity(Draw::evolution, 0), centres_);
   }
 
   /// Refines the pose, and in mode unbiased searches for the most probable one near it.

@@ -63,7 +63,8 @@ class FastSlam final : public SlamFilter {
   const ScanReport& report() const override { return population_.report(); }
   void particles(const ParticleColumns& columns) const override {
     const auto mean_of = [&](std::size_t b) { return proposal_.predicted(b, poses_[b]).mean; };
-    population_.tell(columns, [&](std::size_t i) { return pose_of_particle<Real>(mean_of, i); });
+    population_.write_columns(columns,
+                              [&](std::size_t i) { return pose_of_particle<Real>(mean_of, i); });
   }
   void map(std::span<std::optional<LandmarkEstimate>> landmarks) const override {
     for (std::size_t j = 0; j < landmarks.size(); ++j)

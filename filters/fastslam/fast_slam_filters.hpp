@@ -6,16 +6,16 @@
 #include "filters/fastslam/known_association.hpp"
 #include "filters/fastslam/motion_sampling.hpp"
 #include "filters/fastslam/nearest_association.hpp"
-#include "filters/fastslam/seen_by.hpp"
+#include "filters/fastslam/sensor_policy.hpp"
 
 #include <memory>
 #include <utility>
 
 namespace montecarta::filters {
 
-/// Makes FastSLAM with the given proposal and the association of the setup. `SeenBy` is AtPose or
-/// OnMounting, according to the sensor of the setup.
-template <class Real, class SeenBy = AtPose, class Proposal>
+/// Makes FastSLAM with the given proposal and the association of the setup. `SensorPolicy` is
+/// SensorAtPose or OnMounting, according to the sensor of the setup.
+template <class Real, class SensorPolicy = SensorAtPose, class Proposal>
 std::unique_ptr<SlamFilter> make_fast_slam(const FilterSetup& setup,
                                            const PopulationSettings& settings, Proposal proposal) {
   const auto with = [&](auto association) -> std::unique_ptr<SlamFilter> {
@@ -24,11 +24,11 @@ std::unique_ptr<SlamFilter> make_fast_slam(const FilterSetup& setup,
         std::move(association));
   };
   const bool is_known = setup.association.kind == Association::known;
-  if constexpr (FixesLandmark<typename SeenBy::Kind>) {
+  if constexpr (FixesLandmark<typename SensorPolicy::Kind>) {
     using Held = typename Proposal::Landmark;
     if (is_known) return with(KnownAssociation<Real, Held>(setup.landmarks));
-    return with(NearestAssociation<Real, SeenBy, Held>(settings.particles, setup.association,
-                                                       setup.belief));
+    return with(NearestAssociation<Real, SensorPolicy, Held>(settings.particles, setup.association,
+                                                             setup.belief));
   } else {
     expect(is_known, "delayed initialisation knows identities");
     return with(DelayedKnownAssociation<Real>(setup.landmarks, settings.particles, setup.belief));
@@ -42,17 +42,17 @@ bool weighs_by_ratio(const FilterOptions& options);
 
 /// Makes FastSLAM with poses that are refined by the scan. Each Gaussian has its own transform,
 /// given as that of range and bearing.
-template <class Real, class SeenBy = AtPose, class PoseTransform, class MapTransform>
+template <class Real, class SensorPolicy = SensorAtPose, class PoseTransform, class MapTransform>
 std::unique_ptr<SlamFilter> make_refined(const FilterSetup& setup,
                                          const PoseTransform& pose_transform,
                                          const MapTransform& map_transform) {
   const PopulationSettings settings = population_settings(setup.options);
-  const SeenBy seen_by(setup.belief.sensor);
-  const auto for_pose = seen_by.transform(pose_transform);
-  const auto for_map = seen_by.transform(map_transform);
+  const SensorPolicy sensor_policy(setup.belief.sensor);
+  const auto for_pose = sensor_policy.transform(pose_transform);
+  const auto for_map = sensor_policy.transform(map_transform);
   using Proposal =
       GaussianProposal<Real, std::decay_t<decltype(for_pose)>, std::decay_t<decltype(for_map)>>;
-  return make_fast_slam<Real, SeenBy>(
+  return make_fast_slam<Real, SensorPolicy>(
       setup, settings,
       Proposal(settings.particles, setup.belief, weight_form(setup.options), for_pose, for_map));
 }
@@ -70,30 +70,30 @@ SigmaPoints central_difference_points(const FilterSetup& setup, MapUncertainty m
 SigmaPoints unscented_points(const FilterSetup& setup);
 
 /// With `Real` = double this is the same filter, one particle at a time, for tests.
-template <class Real, class SeenBy = AtPose>
+template <class Real, class SensorPolicy = SensorAtPose>
 std::unique_ptr<SlamFilter> make_fastslam1(const FilterSetup& setup) {
-  const auto transform = SeenBy(setup.belief.sensor).transform(Linearised());
-  return make_fast_slam<Real, SeenBy>(
+  const auto transform = SensorPolicy(setup.belief.sensor).transform(Linearised());
+  return make_fast_slam<Real, SensorPolicy>(
       setup, population_settings(setup.options),
       MotionSampling<Real, std::decay_t<decltype(transform)>>(setup.belief, transform));
 }
-template <class Real, class SeenBy = AtPose>
+template <class Real, class SensorPolicy = SensorAtPose>
 std::unique_ptr<SlamFilter> make_fastslam2(const FilterSetup& setup) {
-  return make_refined<Real, SeenBy>(setup, Linearised(), Linearised());
+  return make_refined<Real, SensorPolicy>(setup, Linearised(), Linearised());
 }
 /// Unscented FastSLAM (Kim 2008): FastSLAM II with the unscented transform at every stage.
-template <class Real, class SeenBy = AtPose>
+template <class Real, class SensorPolicy = SensorAtPose>
 std::unique_ptr<SlamFilter> make_ufastslam(const FilterSetup& setup) {
   const SigmaPoints unscented = unscented_points(setup);
-  return make_refined<Real, SeenBy>(setup, unscented, unscented);
+  return make_refined<Real, SensorPolicy>(setup, unscented, unscented);
 }
 /// SRCD-FastSLAM (Ankishan 2016; EQUATIONS 8): FastSLAM II with central differences at every stage.
 /// It keeps covariances and factors them when points are drawn, which equals the square-root
 /// recursion up to rounding.
-template <class Real, class SeenBy = AtPose>
+template <class Real, class SensorPolicy = SensorAtPose>
 std::unique_ptr<SlamFilter> make_srcd(const FilterSetup& setup) {
   const SigmaPoints points = central_difference_points(setup, map_uncertainty(setup.options));
-  return make_refined<Real, SeenBy>(setup, points, points);
+  return make_refined<Real, SensorPolicy>(setup, points, points);
 }
 /// SRCD-aided FastSLAM (EQUATIONS 8): poses like FastSLAM II, landmarks by central differences.
 template <class Real>

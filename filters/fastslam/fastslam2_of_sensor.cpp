@@ -3,7 +3,7 @@
 
 std::unique_ptr<montecarta::engine::SlamFilter> montecarta::filters::make_fastslam2_of_sensor(
     const FilterSetup& setup) {
-  return with_sensor(setup.belief.sensor, [&](const auto& seen_by) {
-    return make_fastslam2<Lanes, std::decay_t<decltype(seen_by)>>(setup);
+  return with_sensor(setup.belief.sensor, [&](const auto& sensor_policy) {
+    return make_fastslam2<Lanes, std::decay_t<decltype(sensor_policy)>>(setup);
   });
 }

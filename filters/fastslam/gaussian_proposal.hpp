@@ -22,7 +22,7 @@ enum class WeightTime { before_draw, after_draw };
 template <class Real, CarriesPoses<Real> PoseTransform, KeepsLandmarks<Real> MapTransform>
 class RefinedCloud {
  public:
-  using Landmark = HeldBy<MapTransform, Real>;
+  using Landmark = LandmarkStateOf<MapTransform, Real>;
   RefinedCloud(std::size_t particles, const Belief& belief, WeightTime weighed,
                const PoseTransform& pose_transform, const MapTransform& map_transform)
       : belief_(belief),

@@ -4,7 +4,7 @@
 #include "filters/association/waiting_landmarks.hpp"
 #include "filters/fastslam/concepts.hpp"
 #include "filters/fastslam/particle_maps.hpp"
-#include "filters/fastslam/seen_by.hpp"
+#include "filters/fastslam/sensor_policy.hpp"
 #include "filters/population/population.hpp"
 
 #include <algorithm>
@@ -51,7 +51,7 @@ class KnownAssociation {
   void fetch(std::size_t b) const {
     for (const auto& slot : opened_) slot.fetch(b);
   }
-  [[gnu::always_inline]] Match<Real, Held&, Everywhere> match(std::size_t b, std::size_t k) const {
+  [[gnu::always_inline]] Match<Real, Held&, AllLanes> match(std::size_t b, std::size_t k) const {
     return {opened_[k].at(b), seen_[k], {}};
   }
   /// Nothing is to be stored, since match() refers to the map itself.

@@ -17,7 +17,7 @@ namespace montecarta::filters {
 template <class Real, KeepsLandmarks<Real> MapTransform>
 class MotionSampling {
  public:
-  using Landmark = HeldBy<MapTransform, Real>;
+  using Landmark = LandmarkStateOf<MapTransform, Real>;
   using Refined = BasicPose<Real>;
 
   MotionSampling(const Belief& belief, const MapTransform& map_transform)

@@ -4,7 +4,7 @@
 #include "engine/errors.hpp"
 #include "filters/association/pairing.hpp"
 #include "filters/fastslam/concepts.hpp"
-#include "filters/fastslam/seen_by.hpp"
+#include "filters/fastslam/sensor_policy.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -15,7 +15,7 @@ namespace montecarta::filters {
 
 /// Every particle associates detections with the landmarks of its own map (EQUATIONS 17), with the
 /// covariance of its predicted pose in the innovation. Particle i owns the slots 0 to count(i) - 1.
-template <class Real, class SeenBy = AtPose, class Held = LandmarkGaussian<Real>>
+template <class Real, class SensorPolicy = SensorAtPose, class Held = LandmarkGaussian<Real>>
 class NearestAssociation {
  public:
   using Maps = ParticleMaps<Real, Held>;
@@ -150,7 +150,7 @@ class NearestAssociation {
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const std::span<Pairing> pairings = pairings_of(b * kLanes + lane);
       for (std::size_t k = 0; k < seen_.size(); ++k) {
-        pairings[k] = judge(searches[k * kLanes + lane], settings_);
+        pairings[k] = decide_pairing(searches[k * kLanes + lane], settings_);
       }
       exclude_rivals(pairings);
     }
@@ -160,7 +160,7 @@ class NearestAssociation {
   /// {detection, lane}.
   void offer(std::size_t b, std::uint32_t j, const LandmarkGaussian<Real>& landmark,
              const PoseGaussian<Real>& pose, std::span<NearestSearch> searches) const {
-    const auto s = sight(typename SeenBy::Kind(), pose.mean, landmark.mean);
+    const auto s = sight(typename SensorPolicy::Kind(), pose.mean, landmark.mean);
     const auto owned = Real(static_cast<double>(j)) < counts_[b];
     const Real never(std::numeric_limits<double>::infinity());
     // Only the innovation itself differs between detections, and most detections are far away.
@@ -216,7 +216,7 @@ class NearestAssociation {
 
   std::size_t particles_;
   AssociationSettings settings_;
-  SeenBy seen_by_;
+  SensorPolicy seen_by_;
   SensorNoise noise_;
   double log_new_density_;
   std::vector<Real> counts_, resampled_counts_;

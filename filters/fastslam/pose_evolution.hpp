@@ -156,9 +156,11 @@ class OwnEvolution {
     begin(bounds, chance);
     const Real bound(bounds);
     const SearchBox<Real, 3> box{{Real(0.0), Real(0.0), Real(0.0)}, {bound, bound, bound}, {}};
-    return evolve<Real, 3>(
-               population_, box, settings, EvolutionDraws{chance, first_block()}, scratch_,
-               [&](Candidates candidates, std::span<Real> fitness) { judge(candidates, fitness); })
+    return evolve<Real, 3>(population_, box, settings, EvolutionDraws{chance, first_block()},
+                           scratch_,
+                           [&](Candidates candidates, std::span<Real> fitness) {
+                             evaluate(candidates, fitness);
+                           })
         .best;
   }
 
@@ -179,7 +181,7 @@ class OwnEvolution {
     }
   }
 
-  void judge(Candidates candidates, std::span<Real> fitness) const {
+  void evaluate(Candidates candidates, std::span<Real> fitness) const {
     const std::size_t patterns = packed_.patterns();
     for (std::size_t q = 0; q < packed_.blocks(); ++q) {
       const std::size_t p = q % patterns;
@@ -228,7 +230,7 @@ template <class Real>
 class CloudEvolution {
  public:
   /// The fitness: (10.1) or (10.2).
-  enum class Aim { likelihood, posterior };
+  enum class Objective { likelihood, posterior };
 
   /// Collects the poses of the particles and their matches.
   template <class Associating>
@@ -250,16 +252,16 @@ class CloudEvolution {
   }
 
   /// Evolves within `bounds` standard deviations of the cloud; writes the resulting poses.
-  void evolve(Aim aim, double bounds, const EvolutionSettings& settings,
+  void evolve(Objective objective, double bounds, const EvolutionSettings& settings,
               const StreamIdentity& identity, std::vector<BasicPose<Real>>& poses) {
-    const auto judge = [&](Members members, std::span<double> fitness) {
+    const auto evaluate = [&](Members members, std::span<double> fitness) {
       for (std::size_t b = 0; b < fitness_.size(); ++b) {
-        const Real fit = fitness_of_block(aim, b, block_of_poses(members, b));
+        const Real fit = fitness_of_block(objective, b, block_of_poses(members, b));
         for (std::size_t i = b * kLanes; i < end_of(b); ++i) fitness[i] = get(fit, i % kLanes);
       }
     };
     filters::evolve<double, 3>(population_, box(bounds), settings, EvolutionDraws{identity},
-                               scratch_, judge);
+                               scratch_, evaluate);
     for (std::size_t b = 0; b < poses.size(); ++b) poses[b] = block_of_poses(population_, b);
   }
 
@@ -270,11 +272,11 @@ class CloudEvolution {
   /// Index after the last particle of block b.
   std::size_t end_of(std::size_t b) const { return std::min((b + 1) * kLanes, population_.size()); }
 
-  Real fitness_of_block(Aim aim, std::size_t b, const BasicPose<Real>& pose) const {
+  Real fitness_of_block(Objective objective, std::size_t b, const BasicPose<Real>& pose) const {
     const std::size_t scan_size = matched_.size() / fitness_.size();
     const auto scan = std::span(matched_).subspan(b * scan_size, scan_size);
-    return aim == Aim::likelihood ? fitness_[b].likelihood(pose, scan)
-                                  : fitness_[b].posterior(pose, scan);
+    return objective == Objective::likelihood ? fitness_[b].likelihood(pose, scan)
+                                              : fitness_[b].posterior(pose, scan);
   }
 
   std::array<Real, 3> block_of_members(const BasicPose<Real>& pose) const {

@@ -3,7 +3,7 @@
 
 std::unique_ptr<montecarta::engine::SlamFilter> montecarta::filters::make_refined_of_sensor(
     const FilterSetup& setup, const SigmaPoints& points) {
-  return with_sensor(setup.belief.sensor, [&](const auto& seen_by) {
-    return make_refined<Lanes, std::decay_t<decltype(seen_by)>>(setup, points, points);
+  return with_sensor(setup.belief.sensor, [&](const auto& sensor_policy) {
+    return make_refined<Lanes, std::decay_t<decltype(sensor_policy)>>(setup, points, points);
   });
 }

@@ -53,8 +53,8 @@ double distance_squared(const Pose& pose, const Eigen::Vector2d& place) {
 constexpr std::size_t kNear = 30;
 /// Loss by compression [detections of the whole map] after which all landmarks become near, and the
 /// number of detections for which they stay so.
-constexpr double kPatience = 150.0;
-constexpr std::size_t kRest = 5000;
+constexpr double kGreatestBalance = 150.0;
+constexpr std::size_t kDetectionsUncompressed = 5000;
 
 }  // namespace
 
@@ -102,7 +102,7 @@ void CompressedGaussian::start(const Pose& start) {
   most_near_ = kSmallMap;
   updates_ = 0;
   balance_ = 0.0;
-  rests_ = false;
+  is_suspended_ = false;
 }
 
 void CompressedGaussian::replace(const PoseMoments& pose, const MapMoments& map) {
@@ -190,10 +190,10 @@ bool CompressedGaussian::is_out_of_reach(std::size_t slot, const Drift& drift, d
   return distance - share * drift.mean - range > sigmas * (spread + noise);
 }
 
-JointGaussian::Trouble CompressedGaussian::look_at(
+JointGaussian::ObservationStatus CompressedGaussian::predict_observation(
     std::size_t slot, ExpectedObservation& expected,
     const std::optional<ObservationPoint>& at) const {
-  return near_.look_at(point(slot), expected, at);
+  return near_.predict_observation(point(slot), expected, at);
 }
 
 void CompressedGaussian::append(const Eigen::Vector2d& detection, const Eigen::Vector2d& behind) {
@@ -289,16 +289,16 @@ void CompressedGaussian::write_cross_with_far(Eigen::Index at, Columns2& column)
 
 /// Returns whether there are too many near points, or all have been near for long enough.
 bool CompressedGaussian::is_time_to_choose() const {
-  return rests_ ? updates_ > kRest : near_.landmarks() > most_near_;
+  return is_suspended_ ? updates_ > kDetectionsUncompressed : near_.landmarks() > most_near_;
 }
 
 /// Expands the map and chooses near landmarks again.
 void CompressedGaussian::choose(std::span<const std::uint32_t> wanted) {
   if (whole_.room() < rows()) whole_.make_room(std::max(2 * whole_.room(), rows()));
   expand_into(whole_);
-  book();
-  rests_ = balance_ < -kPatience;
-  if (rests_) {
+  update_balance();
+  is_suspended_ = balance_ < -kGreatestBalance;
+  if (is_suspended_) {
     chosen_.resize(landmarks());
     std::iota(chosen_.begin(), chosen_.end(), 0U);
     balance_ = 0.0;
@@ -314,11 +314,11 @@ void CompressedGaussian::choose(std::span<const std::uint32_t> wanted) {
 
 /// Updates the balance of compression since the near landmarks were chosen. Expanding a map takes
 /// about as long as one detection for every row of stand-ins.
-void CompressedGaussian::book() {
+void CompressedGaussian::update_balance() {
   const double share = static_cast<double>(near_.landmarks()) / static_cast<double>(landmarks());
   const double saved = static_cast<double>(updates_) * (1.0 - share * share);
   balance_ += saved - static_cast<double>(basis_.size());
-  balance_ = std::min(balance_, kPatience);
+  balance_ = std::min(balance_, kGreatestBalance);
 }
 
 /// Chooses the wanted landmarks and the nearest ones to the vehicle.

@@ -51,7 +51,7 @@ class Basis {
 /// C. For the invariant error, W is closed under a quarter turn, and coefficients turn in pairs.
 class CompressedGaussian {
  public:
-  using Trouble = JointGaussian::Trouble;
+  using ObservationStatus = JointGaussian::ObservationStatus;
 
   CompressedGaussian(const Belief& belief, Retraction retraction, std::size_t room);
 
@@ -88,20 +88,21 @@ class CompressedGaussian {
   };
   Drift drift() const;
   /// Returns whether no detection up to `range` [m] from the pose can lie within `sigmas` standard
-  /// deviations of a far landmark. This is cheaper than look_at().
+  /// deviations of a far landmark. This is cheaper than predict_observation().
   bool is_out_of_reach(std::size_t slot, const Drift& drift, double range, double sigmas) const;
-  [[nodiscard]] Trouble look_at(std::size_t slot, ExpectedObservation& expected,
-                                const std::optional<ObservationPoint>& at = {}) const;
-  [[nodiscard]] Trouble look_by_sigma_points(std::size_t slot,
-                                             ExpectedObservation& expected) const {
-    return near_.look_by_sigma_points(point(slot), expected);
+  [[nodiscard]] ObservationStatus predict_observation(
+      std::size_t slot, ExpectedObservation& expected,
+      const std::optional<ObservationPoint>& at = {}) const;
+  [[nodiscard]] ObservationStatus predict_by_sigma_points(std::size_t slot,
+                                                          ExpectedObservation& expected) const {
+    return near_.predict_by_sigma_points(point(slot), expected);
   }
 
   /// Makes the given landmarks near, with others around the vehicle, unless they are near already.
   void make_near(std::span<const std::uint32_t> slots);
   /// JointGaussian::update_with() for a landmark that is near.
-  Trouble update_with(std::size_t slot, const Eigen::Vector2d& detected, int iterations,
-                      ExpectedObservation& expected) {
+  ObservationStatus update_with(std::size_t slot, const Eigen::Vector2d& detected, int iterations,
+                                ExpectedObservation& expected) {
     assert(is_near(slot));
     ++updates_;
     return near_.update_with(point_of_[slot], detected, iterations, expected);
@@ -140,7 +141,7 @@ class CompressedGaussian {
   PointMoments far_point(std::size_t slot) const;
   bool is_time_to_choose() const;
   void choose(std::span<const std::uint32_t> wanted);
-  void book();
+  void update_balance();
   void choose_around(std::span<const std::uint32_t> wanted);
   void expand_into(MapMoments& map) const;
   void write_far(MapMoments& map) const;
@@ -157,7 +158,7 @@ class CompressedGaussian {
   std::size_t most_near_;                ///< number of points beyond which to choose again
   std::size_t updates_ = 0;              ///< number of detections since the near ones were chosen
   double balance_ = 0.0;        ///< saved by compression, in units of detections of the whole map
-  bool rests_ = false;          ///< all landmarks are near, since compression does not pay off
+  bool is_suspended_ = false;   ///< all landmarks are near, since compression does not pay off
   Eigen::Index stand_ins_ = 0;  ///< their first row in near_
   Basis basis_;                 ///< W, over the rows of whole_
   MapMoments whole_;            ///< moments of far landmarks when the near ones were chosen

@@ -163,9 +163,9 @@ void JointBelief::pair_nearest(Scan scan) {
 
 /// Predicts the detection of a landmark; returns false if it cannot be used. A fault is counted.
 bool JointBelief::predict(std::size_t slot, ExpectedObservation& expected) {
-  const auto trouble = linearisation_->predict(system_, slot, expected);
-  if (trouble == CompressedGaussian::Trouble::faulty) ++outcome_.faults;
-  return trouble == CompressedGaussian::Trouble::none;
+  const auto status = linearisation_->predict(system_, slot, expected);
+  if (status == CompressedGaussian::ObservationStatus::faulty) ++outcome_.faults;
+  return status == CompressedGaussian::ObservationStatus::usable;
 }
 
 /// Reports the innovation before the detection, while the log-likelihood is that of the last
@@ -180,8 +180,8 @@ void JointBelief::update_with(std::size_t k, const Detection& detection) {
   }
   const ObservationPoint turning = rotation_point(slot);
   used_detections_.push_back({k, expected.innovation(detected), expected.factor.covariance()});
-  const auto trouble = system_.gaussian.update_with(slot, detected, iterations_, expected);
-  if (trouble == CompressedGaussian::Trouble::faulty) ++outcome_.faults;
+  const auto status = system_.gaussian.update_with(slot, detected, iterations_, expected);
+  if (status == CompressedGaussian::ObservationStatus::faulty) ++outcome_.faults;
   rotation_information_ += turned(expected, place_of(turning.pose), turning.landmark)
                                .cwiseQuotient(sigma_)
                                .squaredNorm();

@@ -76,7 +76,7 @@ class JointFilter final : public SlamFilter {
     innovations_.start(context, 1, scan.size(), 0.0);
     const auto innovations = innovations_.of_block(0, 1.0);
     for (const auto& [k, v, S] : joint_.used_detections()) {
-      innovations.add(k, {{v(0), v(1)}, {S(0, 0), S(1, 0), S(1, 1)}}, Everywhere());
+      innovations.add(k, {{v(0), v(1)}, {S(0, 0), S(1, 0), S(1, 1)}}, AllLanes());
       innovations_.matched_weight(k) = 1.0;
     }
     innovations_.add_to(context, report_, components_of(belief_.sensor).size());

@@ -161,29 +161,29 @@ PointMoments JointGaussian::point(std::size_t slot) const {
           map_.covariance.block<2, 2>(at, at)};
 }
 
-JointGaussian::Trouble JointGaussian::weigh(const PointMoments& landmark,
-                                            const Eigen::Matrix2d& more,
-                                            ExpectedObservation& expected) const {
+JointGaussian::ObservationStatus JointGaussian::weigh(const PointMoments& landmark,
+                                                      const Eigen::Matrix2d& more,
+                                                      ExpectedObservation& expected) const {
   const Matrix23& Hx = expected.pose_jacobian;
   const Eigen::Matrix2d& Hf = expected.landmark_jacobian;
   const Eigen::Matrix2d mixed = Hf * landmark.cross * Hx.transpose();
   const auto L = factor(Hx * pose_.covariance * Hx.transpose() + mixed + mixed.transpose() +
                         Hf * landmark.covariance * Hf.transpose() + more + observation_noise_);
-  if (!L) return Trouble::faulty;
+  if (!L) return ObservationStatus::faulty;
   expected.factor = *L;
-  return Trouble::none;
+  return ObservationStatus::usable;
 }
 
-JointGaussian::Trouble JointGaussian::look_at(const PointMoments& landmark,
-                                              ExpectedObservation& expected,
-                                              const std::optional<ObservationPoint>& at) const {
+JointGaussian::ObservationStatus JointGaussian::predict_observation(
+    const PointMoments& landmark, ExpectedObservation& expected,
+    const std::optional<ObservationPoint>& at) const {
   const auto linearised = [&](const Pose& pose, const Eigen::Vector2d& point) {
     return linearised_detection(belief_.sensor, pose, Point{point.x(), point.y()});
   };
   auto seen = linearised(pose_.mean, landmark.mean);
-  if (!seen) return Trouble::too_near;
+  if (!seen) return ObservationStatus::too_near;
   expected.observation = seen->value;
-  if (at && !(seen = linearised(at->pose, at->landmark))) return Trouble::too_near;
+  if (at && !(seen = linearised(at->pose, at->landmark))) return ObservationStatus::too_near;
   expected.pose_jacobian = seen->by_pose;
   expected.landmark_jacobian = seen->by_landmark;
   expected.ahead.setZero();
@@ -270,8 +270,8 @@ JointGaussian::Step JointGaussian::step_of(std::size_t slot, const ExpectedObser
 }
 
 /// Linearises again after `step`; the Gaussian still belongs to the estimate before it.
-JointGaussian::Trouble JointGaussian::linearise_after(const Step& step, std::size_t slot,
-                                                      ExpectedObservation& expected) const {
+JointGaussian::ObservationStatus JointGaussian::linearise_after(
+    const Step& step, std::size_t slot, ExpectedObservation& expected) const {
   const Eigen::Index row = row_of(slot);
   Eigen::Vector2d pose_way = step.pose.head<2>(), landmark_way = step.landmark;
   if (retraction_ == Retraction::invariant) {
@@ -283,7 +283,7 @@ JointGaussian::Trouble JointGaussian::linearise_after(const Step& step, std::siz
   const auto at = linearised_detection(
       belief_.sensor, Pose{from.x + pose_way(0), from.y + pose_way(1), from.heading + step.pose(2)},
       Point{map_.mean(row) + landmark_way(0), map_.mean(row + 1) + landmark_way(1)});
-  if (!at) return Trouble::too_near;
+  if (!at) return ObservationStatus::too_near;
   ExpectedObservation next{.pose_jacobian = at->by_pose,
                            .landmark_jacobian = at->by_landmark,
                            .observation = at->value,
@@ -294,27 +294,29 @@ JointGaussian::Trouble JointGaussian::linearise_after(const Step& step, std::siz
     next.pose_jacobian.col(2) += next.pose_jacobian.leftCols<2>() * quarter_turned(pose_way) +
                                  next.landmark_jacobian * quarter_turned(landmark_way);
   }
-  if (const auto trouble = weigh(point(slot), Eigen::Matrix2d::Zero(), next);
-      trouble != Trouble::none)
-    return trouble;
+  if (const auto status = weigh(point(slot), Eigen::Matrix2d::Zero(), next);
+      status != ObservationStatus::usable)
+    return status;
   next.ahead = next.pose_jacobian * step.pose + next.landmark_jacobian * step.landmark;
   expected = next;
-  return Trouble::none;
+  return ObservationStatus::usable;
 }
 
-JointGaussian::Trouble JointGaussian::update_with(std::size_t slot, const Eigen::Vector2d& detected,
-                                                  int iterations, ExpectedObservation& expected) {
+JointGaussian::ObservationStatus JointGaussian::update_with(std::size_t slot,
+                                                            const Eigen::Vector2d& detected,
+                                                            int iterations,
+                                                            ExpectedObservation& expected) {
   Eigen::Vector2d innovation = expected.innovation(detected);
-  Trouble trouble = Trouble::none;
+  ObservationStatus status = ObservationStatus::usable;
   for (int i = 0; i < iterations; ++i) {
-    trouble = linearise_after(step_of(slot, expected, innovation), slot, expected);
-    if (trouble != Trouble::none) break;
+    status = linearise_after(step_of(slot, expected, innovation), slot, expected);
+    if (status != ObservationStatus::usable) break;
     const Eigen::Vector2d before = std::exchange(innovation, expected.innovation(detected));
     if (expected.factor.whiten(innovation - before).norm() < kConverged) break;
   }
   whiten_gain(slot, expected);
   condition(expected.factor.whiten(innovation));
-  return trouble;
+  return status;
 }
 
 /// W = P H' L^-T.
@@ -428,14 +430,14 @@ void JointGaussian::change_map(bool carries_error) {
 
 // Regression on sigma points instead of derivatives (EQUATIONS (15.13), (15.14)).
 
-JointGaussian::Trouble JointGaussian::look_by_sigma_points(const PointMoments& landmark,
-                                                           ExpectedObservation& expected) const {
+JointGaussian::ObservationStatus JointGaussian::predict_by_sigma_points(
+    const PointMoments& landmark, ExpectedObservation& expected) const {
   const Eigen::Vector2d away = landmark.mean - place_of(pose_.mean);
   const Matrix35 T = line_of_sight(away);
   Eigen::Matrix<double, 5, 5> P;
   P << pose_.covariance, landmark.cross.transpose(), landmark.cross, landmark.covariance;
   const Eigen::LLT<Matrix3> factor(T * P * T.transpose() + kSmallest * Matrix3::Identity());
-  if (factor.info() != Eigen::Success) return Trouble::faulty;
+  if (factor.info() != Eigen::Success) return ObservationStatus::faulty;
   const Matrix3 root = factor.matrixL();
   const auto observe = [&](const Eigen::Vector3d& step) {
     const Eigen::Vector2d to = away + T.topRightCorner<2, 2>().transpose() * step.head<2>();
@@ -443,9 +445,9 @@ JointGaussian::Trouble JointGaussian::look_by_sigma_points(const PointMoments& l
                                 Point{to.x(), to.y()});
   };
   const auto centre = observe(Eigen::Vector3d::Zero());
-  if (!centre) return Trouble::too_near;
+  if (!centre) return ObservationStatus::too_near;
   const auto found = differences(observe, centre->value, root, wraps_);
-  if (!found) return Trouble::too_near;
+  if (!found) return ObservationStatus::too_near;
   const Eigen::Vector2d shift = rule().mean_weight * found->even.rowwise().sum();
   const Eigen::Matrix<double, 3, 2> slope =
       factor.matrixU().solve(found->odd.transpose()) / rule().spread;

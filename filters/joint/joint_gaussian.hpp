@@ -137,23 +137,25 @@ class JointGaussian {
 
   /// Predicts the detection of `landmark`; `faulty` means that S is not positive definite. The
   /// derivatives are those at `at` if it is given, else at the estimate.
-  enum class Trouble { none, too_near, faulty };
-  [[nodiscard]] Trouble look_at(const PointMoments& landmark, ExpectedObservation& expected,
-                                const std::optional<ObservationPoint>& at = {}) const;
-  [[nodiscard]] Trouble look_at(std::size_t slot, ExpectedObservation& expected) const {
-    return look_at(point(slot), expected);
+  enum class ObservationStatus { usable, too_near, faulty };
+  [[nodiscard]] ObservationStatus predict_observation(
+      const PointMoments& landmark, ExpectedObservation& expected,
+      const std::optional<ObservationPoint>& at = {}) const;
+  [[nodiscard]] ObservationStatus predict_observation(std::size_t slot,
+                                                      ExpectedObservation& expected) const {
+    return predict_observation(point(slot), expected);
   }
   /// The same by sigma points of the landmark relative to the pose (EQUATIONS (15.13)): mean and
   /// slopes of the regression, and S with the nonlinear part.
-  [[nodiscard]] Trouble look_by_sigma_points(const PointMoments& landmark,
-                                             ExpectedObservation& expected) const;
+  [[nodiscard]] ObservationStatus predict_by_sigma_points(const PointMoments& landmark,
+                                                          ExpectedObservation& expected) const;
   /// Conditions the Gaussian on `detected`, which is predicted by `expected`. The model is
   /// linearised again at the updated estimate until it converges, at most `iterations` times
   /// (iterated EKF, Bell and Cathey 1993; for invariant errors the derivative of the exponential is
-  /// approximated by one). `expected` becomes the last linearisation. Returns the trouble that
+  /// approximated by one). `expected` becomes the last linearisation. Returns the status that
   /// ended the iterations too early, if any; the linearisation before it is then used.
-  Trouble update_with(std::size_t slot, const Eigen::Vector2d& detected, int iterations,
-                      ExpectedObservation& expected);
+  ObservationStatus update_with(std::size_t slot, const Eigen::Vector2d& detected, int iterations,
+                                ExpectedObservation& expected);
   /// Adds a landmark from one detection that fixes it, with its correlations. `behind` [m] is the
   /// vector to the estimated position of the vehicle from the point at which the landmark is
   /// linearised by the heading.
@@ -183,12 +185,12 @@ class JointGaussian {
   Eigen::Index rows() const { return packed(n_landmarks_); }
   void grow(std::size_t room);
   /// Computes the factor of S = H P H' + `more` + R.
-  [[nodiscard]] Trouble weigh(const PointMoments& landmark, const Eigen::Matrix2d& more,
-                              ExpectedObservation& expected) const;
+  [[nodiscard]] ObservationStatus weigh(const PointMoments& landmark, const Eigen::Matrix2d& more,
+                                        ExpectedObservation& expected) const;
   Step step_of(std::size_t slot, const ExpectedObservation& expected,
                const Eigen::Vector2d& innovation) const;
-  [[nodiscard]] Trouble linearise_after(const Step& step, std::size_t slot,
-                                        ExpectedObservation& expected) const;
+  [[nodiscard]] ObservationStatus linearise_after(const Step& step, std::size_t slot,
+                                                  ExpectedObservation& expected) const;
   void put(Eigen::Index row, const NewPoint& point);
   void whiten_gain(std::size_t slot, const ExpectedObservation& expected);
   void condition(const Eigen::Vector2d& white);

@@ -50,9 +50,10 @@ void Linearisation::move(const MotionIncrement& motion, LinearisedSystem& system
   system.points.move(how);
 }
 
-CompressedGaussian::Trouble Linearisation::predict(const LinearisedSystem& system, std::size_t slot,
-                                                   ExpectedObservation& expected) const {
-  return system.gaussian.look_at(slot, expected);
+CompressedGaussian::ObservationStatus Linearisation::predict(const LinearisedSystem& system,
+                                                             std::size_t slot,
+                                                             ExpectedObservation& expected) const {
+  return system.gaussian.predict_observation(slot, expected);
 }
 
 Eigen::Vector2d Linearisation::offset(const LinearisedSystem& /*system*/) const {
@@ -96,9 +97,9 @@ class AtFirstEstimates : public Linearisation {
     linearised.by_heading += quarter_turned(offset(system) - shift(system));
     return linearised;
   }
-  CompressedGaussian::Trouble predict(const LinearisedSystem& system, std::size_t slot,
-                                      ExpectedObservation& expected) const override {
-    return system.gaussian.look_at(
+  CompressedGaussian::ObservationStatus predict(const LinearisedSystem& system, std::size_t slot,
+                                                ExpectedObservation& expected) const override {
+    return system.gaussian.predict_observation(
         slot, expected, ObservationPoint{system.points.pose(), system.points.landmark(slot)});
   }
   Eigen::Vector2d offset(const LinearisedSystem& system) const override {
@@ -153,9 +154,9 @@ class BySigmaPoints final : public Linearisation {
                               const MotionIncrement& motion) const override {
     return system.gaussian.regressed(motion);
   }
-  CompressedGaussian::Trouble predict(const LinearisedSystem& system, std::size_t slot,
-                                      ExpectedObservation& expected) const override {
-    return system.gaussian.look_by_sigma_points(slot, expected);
+  CompressedGaussian::ObservationStatus predict(const LinearisedSystem& system, std::size_t slot,
+                                                ExpectedObservation& expected) const override {
+    return system.gaussian.predict_by_sigma_points(slot, expected);
   }
 };
 

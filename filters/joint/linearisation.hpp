@@ -60,8 +60,9 @@ class Linearisation {
                                       const MotionIncrement& motion) const;
   virtual void move(const MotionIncrement& motion, LinearisedSystem& system) const;
   /// Predicts the detection of a landmark.
-  virtual CompressedGaussian::Trouble predict(const LinearisedSystem& system, std::size_t slot,
-                                              ExpectedObservation& expected) const;
+  virtual CompressedGaussian::ObservationStatus predict(const LinearisedSystem& system,
+                                                        std::size_t slot,
+                                                        ExpectedObservation& expected) const;
   /// Vector [m] to the estimated pose from the one at which a new landmark is linearised.
   virtual Eigen::Vector2d offset(const LinearisedSystem& system) const;
   /// All detections of a scan have been used.

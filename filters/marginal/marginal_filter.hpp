@@ -202,7 +202,7 @@ void MarginalFilter<Real>::particles(const ParticleColumns& columns) const {
   const auto pose_of = [&](std::size_t i) {
     return motion_.from(pose_of_particle<Real>([&](std::size_t b) { return poses_[b]; }, i)).mean;
   };
-  population_.tell(columns, pose_of);
+  population_.write_columns(columns, pose_of);
 }
 
 template <class Real>

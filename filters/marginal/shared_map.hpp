@@ -116,7 +116,7 @@ class SharedLikelihood {
     Evidence<Real> evidence;
     for (const Seen& seen : seen_) {
       LandmarkGaussian<Real> landmark = seen.landmark;
-      Linearised().update(landmark, pose, seen.observation, noise_, Everywhere(), evidence);
+      Linearised().update(landmark, pose, seen.observation, noise_, AllLanes(), evidence);
     }
     return {evidence.log_density(), evidence.left_out()};
   }
@@ -129,7 +129,7 @@ class SharedLikelihood {
       innovations.add(k,
                       innovation_of(kernel.covariance, s, residual(seen_[k].observation, s),
                                     seen_[k].landmark.covariance, noise_),
-                      Everywhere());
+                      AllLanes());
     }
     return at(kernel.mean);
   }
@@ -140,8 +140,8 @@ class SharedLikelihood {
     for (std::size_t k = 0; k < seen_.size(); ++k) {
       innovations.add(k,
                       Linearised().refine(kernel, seen_[k].landmark, seen_[k].observation, noise_,
-                                          Everywhere(), evidence),
-                      Everywhere());
+                                          AllLanes(), evidence),
+                      AllLanes());
     }
     return {evidence.log_density(), evidence.left_out()};
   }

@@ -67,7 +67,7 @@ BasicPose<Real> move(const BasicPose<Real>& pose, const Control& control, double
 template <class Real, class V>
 [[gnu::always_inline]] inline LinearisedMove<Real> linearised_move(
     const BasicPose<Real>& pose, const Direction<Real>& heading, const Control& control,
-    const Bend<double>& bend, double duration, const V& vehicle) {
+    const TurningAngle<double>& bend, double duration, const V& vehicle) {
   const DifferentiatedStep<kControlsOf<V>> body =
       differentiated_step(vehicle, control, bend, duration);
   const BasicPoint<Real> way = in_world(heading, Real(body.step.forward), Real(body.step.left));
@@ -99,7 +99,7 @@ LinearisedMove<Real> linearised_move(const BasicPose<Real>& pose, const Control&
   return std::visit(
       [&](const auto& one) {
         return linearised_move(pose, direction_of(pose.heading), control,
-                               bend_of(bend_angle(one, control, duration)), duration, one);
+                               turning_angle_of(bend_angle(one, control, duration)), duration, one);
       },
       vehicle);
 }

@@ -24,18 +24,18 @@ struct BodyStep {
 /// The angle in which a step is not linear, and its unit vector: the steering angle of a car, or
 /// the turn during this step if the yaw rate is controlled.
 template <class Real>
-struct Bend {
+struct TurningAngle {
   Real angle;  ///< [rad]
   Direction<Real> direction;
 };
 
 template <class Real>
-Bend<Real> bend_of(const Real& angle) {
+TurningAngle<Real> turning_angle_of(const Real& angle) {
   return {angle, direction_of(angle)};
 }
 
 /// The input of the pilot that steers a simulated vehicle to a way-point.
-struct Aim {
+struct PilotInput {
   Control before;       ///< control of the previous step; zero at the first one
   double off;           ///< [rad] direction of the way-point minus the heading, not wrapped
   double speed;         ///< [m/s] desired
@@ -76,7 +76,7 @@ struct MeanDirection {
 
 /// `turn` must be less than 1e5 rad.
 template <class Real>
-MeanDirection<Real> mean_direction(const Bend<Real>& turn) {
+MeanDirection<Real> mean_direction(const TurningAngle<Real>& turn) {
   const auto& [cosine, sine] = turn.direction;
   const auto still = turn.angle == Real(0.0);
   const Real angle = select(still, Real(1.0), turn.angle);
@@ -88,7 +88,7 @@ MeanDirection<Real> mean_direction(const Bend<Real>& turn) {
 }
 
 /// Derivative of mean_direction() by the turn [1/rad].
-inline MeanDirection<double> mean_direction_by_turn(const Bend<double>& turn) {
+inline MeanDirection<double> mean_direction_by_turn(const TurningAngle<double>& turn) {
   const auto& [cosine, sine] = turn.direction;
   const double t = turn.angle;
   if (std::abs(t) < 1e-3) return {-t / 3.0 + t * t * t / 30.0, 0.5 - t * t / 8.0};
@@ -99,7 +99,7 @@ inline MeanDirection<double> mean_direction_by_turn(const Bend<double>& turn) {
 /// Displacement by the velocity (forward, left) [m/s] in `duration` [s]; its turn is 0.
 template <class Real>
 BodyStep<Real> twist_travel(Integration integration, const Real& forward, const Real& left,
-                            const Bend<Real>& turn, double duration) {
+                            const TurningAngle<Real>& turn, double duration) {
   const Real ahead = forward * Real(duration), aside = left * Real(duration);
   if (integration == Integration::euler) return {ahead, aside, Real(0.0)};
   const auto [along, across] = mean_direction(turn);
@@ -108,7 +108,7 @@ BodyStep<Real> twist_travel(Integration integration, const Real& forward, const 
 
 /// Derivative of twist_travel() by the turn, each element per rad.
 inline BodyStep<double> twist_travel_by_turn(Integration integration, double forward, double left,
-                                             const Bend<double>& turn, double duration) {
+                                             const TurningAngle<double>& turn, double duration) {
   if (integration == Integration::euler) return {0.0, 0.0, 0.0};
   const double ahead = forward * duration, aside = left * duration;
   const auto [along, across] = mean_direction_by_turn(turn);
@@ -120,7 +120,7 @@ inline Control twist_of(Integration integration, const BodyStep<double>& step, d
   const double yaw_rate = step.turn / duration;
   const double ahead = step.forward / duration, aside = step.left / duration;
   if (integration == Integration::euler) return {ahead, aside, yaw_rate};
-  const auto [along, across] = mean_direction(bend_of(step.turn));
+  const auto [along, across] = mean_direction(turning_angle_of(step.turn));
   const double square = along * along + across * across;  // 0 only after whole turns
   if (square == 0.0) return {0.0, 0.0, yaw_rate};
   return {fma(ahead, along, aside * across) / square, fma(aside, along, -ahead * across) / square,
@@ -128,7 +128,7 @@ inline Control twist_of(Integration integration, const BodyStep<double>& step, d
 }
 
 /// The yaw rate [rad/s] that turns by `off` [rad] in one control step, limited to `limit`.
-inline double yaw_rate_towards(const Aim& aim, double off, double limit) {
+inline double yaw_rate_towards(const PilotInput& aim, double off, double limit) {
   return std::clamp(off * aim.control_rate, -limit, limit);
 }
 

@@ -38,12 +38,12 @@ struct Car {
   static constexpr std::array kControls = {Quantity::speed, Quantity::steer};
   static const std::array<VehicleNumber<Car>, 6>& numbers();
 
-  static constexpr bool kTurnsByBend = false;
-  static double bend_scale(double /*duration*/) { return 1.0; }
+  static constexpr bool kTurnsByAngle = false;
+  static double angle_scale(double /*duration*/) { return 1.0; }
 
   /// Displacement in the frame of the vehicle (EQUATIONS 1), linear in the speed.
   template <class Real>
-  BodyStep<Real> travel(const std::array<Real, 1>& speed, const Bend<Real>& steer,
+  BodyStep<Real> travel(const std::array<Real, 1>& speed, const TurningAngle<Real>& steer,
                         double duration) const {
     const auto& wheel = steer.direction;
     const Real way = speed[0] * Real(duration);
@@ -60,8 +60,8 @@ struct Car {
   }
 
   /// Derivative of travel() by the steering angle, each element per rad.
-  BodyStep<double> travel_by_bend(const std::array<double, 1>& speed, const Bend<double>& steer,
-                                  double duration) const {
+  BodyStep<double> travel_by_angle(const std::array<double, 1>& speed,
+                                   const TurningAngle<double>& steer, double duration) const {
     const auto& wheel = steer.direction;
     const double way = speed[0] * duration;
     const double L = wheelbase;
@@ -89,7 +89,7 @@ struct Car {
   }
 
   /// Turns the steering towards the way-point, limited in rate and angle (EQUATIONS (1.7)).
-  Control steered(const Aim& aim) const {
+  Control steered(const PilotInput& aim) const {
     const double steer = aim.before[1];
     const double most = steer_rate_limit / aim.control_rate;
     const double change = std::clamp(wrap(aim.off - steer), -most, most);

@@ -20,16 +20,16 @@ struct DifferentialDrive {
   static constexpr std::array kControls = {Quantity::speed, Quantity::yaw_rate};
   static const std::array<VehicleNumber<DifferentialDrive>, 2>& numbers();
 
-  static constexpr bool kTurnsByBend = true;
-  static double bend_scale(double duration) { return duration; }
+  static constexpr bool kTurnsByAngle = true;
+  static double angle_scale(double duration) { return duration; }
 
   template <class Real>
-  BodyStep<Real> travel(const std::array<Real, 1>& speed, const Bend<Real>& turn,
+  BodyStep<Real> travel(const std::array<Real, 1>& speed, const TurningAngle<Real>& turn,
                         double duration) const {
     return twist_travel(integration, speed[0], Real(0.0), turn, duration);
   }
-  BodyStep<double> travel_by_bend(const std::array<double, 1>& speed, const Bend<double>& turn,
-                                  double duration) const {
+  BodyStep<double> travel_by_angle(const std::array<double, 1>& speed,
+                                   const TurningAngle<double>& turn, double duration) const {
     return twist_travel_by_turn(integration, speed[0], 0.0, turn, duration);
   }
   /// The nearest possible control, since the vehicle cannot move sideways.
@@ -38,7 +38,7 @@ struct DifferentialDrive {
     return {twist[0], twist[2]};
   }
 
-  Control steered(const Aim& aim) const {
+  Control steered(const PilotInput& aim) const {
     const double off = wrap(aim.off);
     const double speed = std::abs(off) > turn_on_spot ? 0.0 : aim.speed;
     return {speed, yaw_rate_towards(aim, off, yaw_rate_limit)};

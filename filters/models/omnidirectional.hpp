@@ -21,16 +21,16 @@ struct Omnidirectional {
                                            Quantity::yaw_rate};
   static const std::array<VehicleNumber<Omnidirectional>, 1>& numbers();
 
-  static constexpr bool kTurnsByBend = true;
-  static double bend_scale(double duration) { return duration; }
+  static constexpr bool kTurnsByAngle = true;
+  static double angle_scale(double duration) { return duration; }
 
   template <class Real>
-  BodyStep<Real> travel(const std::array<Real, 2>& velocity, const Bend<Real>& turn,
+  BodyStep<Real> travel(const std::array<Real, 2>& velocity, const TurningAngle<Real>& turn,
                         double duration) const {
     return twist_travel(integration, velocity[0], velocity[1], turn, duration);
   }
-  BodyStep<double> travel_by_bend(const std::array<double, 2>& velocity, const Bend<double>& turn,
-                                  double duration) const {
+  BodyStep<double> travel_by_angle(const std::array<double, 2>& velocity,
+                                   const TurningAngle<double>& turn, double duration) const {
     return twist_travel_by_turn(integration, velocity[0], velocity[1], turn, duration);
   }
   Control control_of(const BodyStep<double>& step, double duration) const {
@@ -38,7 +38,7 @@ struct Omnidirectional {
   }
 
   /// Drives straight to the way-point while it turns towards it.
-  Control steered(const Aim& aim) const {
+  Control steered(const PilotInput& aim) const {
     const double off = wrap(aim.off);
     return {aim.speed * std::cos(off), aim.speed * std::sin(off),
             yaw_rate_towards(aim, off, yaw_rate_limit)};

@@ -20,9 +20,9 @@ namespace montecarta::models {
 /// - kNames, name(), named(): its names in study files; kControls: its n controls; numbers(): its
 ///   other settings; `integration`: only if the user may choose it;
 /// - travel(): its displacement at a given bend, linear in the first n - 1 controls. The bend is an
-///   angle: the last control times bend_scale(). If kTurnsByBend, the vehicle turns by that angle
+///   angle: the last control times angle_scale(). If kTurnsByAngle, the vehicle turns by that angle
 ///   and the turn of travel() is 0;
-/// - travel_by_bend(): the derivative of travel(); control_of(): the control of a step;
+/// - travel_by_angle(): the derivative of travel(); control_of(): the control of a step;
 /// - steered(), way_to_turn(), kTurnLimit: how a pilot turns it to a way-point.
 using Vehicle = std::variant<Car, DifferentialDrive, Omnidirectional>;
 
@@ -58,26 +58,26 @@ std::array<Real, N> first_of(const ControlOf<Real>& control) {
   return first;
 }
 
-/// The angle [rad] in which a step of `duration` [s] is not linear (see Bend).
+/// The angle [rad] in which a step of `duration` [s] is not linear (see TurningAngle).
 template <class V>
 double bend_angle(const V& vehicle, const Control& control, double duration) {
-  return control[kLinearOf<V>] * vehicle.bend_scale(duration);
+  return control[kLinearOf<V>] * vehicle.angle_scale(duration);
 }
 
 /// One control step of `duration` [s] in the frame of the vehicle (EQUATIONS 1), for one vehicle
 /// (double) or one per lane; `bend` belongs to the control.
 template <class V, class Real>
 BodyStep<Real> body_step_at(const V& vehicle, const ControlOf<Real>& control,
-                            const Bend<Real>& bend, double duration) {
+                            const TurningAngle<Real>& bend, double duration) {
   BodyStep<Real> step = vehicle.travel(first_of<kLinearOf<V>>(control), bend, duration);
-  if constexpr (V::kTurnsByBend) step.turn = bend.angle;
+  if constexpr (V::kTurnsByAngle) step.turn = bend.angle;
   return step;
 }
 /// The same with the bend computed from the control.
 template <class V, class Real>
 BodyStep<Real> body_step_of(const V& vehicle, const ControlOf<Real>& control, double duration) {
-  const Real angle = control[kLinearOf<V>] * Real(vehicle.bend_scale(duration));
-  return body_step_at(vehicle, control, bend_of(angle), duration);
+  const Real angle = control[kLinearOf<V>] * Real(vehicle.angle_scale(duration));
+  return body_step_at(vehicle, control, turning_angle_of(angle), duration);
 }
 template <class Real>
 BodyStep<Real> body_step(const Vehicle& vehicle, const ControlOf<Real>& control, double duration) {
@@ -96,8 +96,8 @@ struct DifferentiatedStep {
 
 /// travel() with component i equal to `size` and all others 0, the share of that component.
 template <class V>
-BodyStep<double> unit_travel(const V& vehicle, std::size_t i, double size, const Bend<double>& bend,
-                             double duration) {
+BodyStep<double> unit_travel(const V& vehicle, std::size_t i, double size,
+                             const TurningAngle<double>& bend, double duration) {
   std::array<double, kLinearOf<V>> linear{};
   linear[i] = size;
   return vehicle.travel(linear, bend, duration);
@@ -106,7 +106,7 @@ BodyStep<double> unit_travel(const V& vehicle, std::size_t i, double size, const
 /// body_step_at() with its derivatives; `bend` belongs to the control.
 template <class V>
 [[gnu::always_inline]] inline DifferentiatedStep<kControlsOf<V>> differentiated_step(
-    const V& vehicle, const Control& control, const Bend<double>& bend, double duration) {
+    const V& vehicle, const Control& control, const TurningAngle<double>& bend, double duration) {
   constexpr std::size_t kLinear = kLinearOf<V>;
   DifferentiatedStep<kControlsOf<V>> result{
       .step = body_step_at(vehicle, control.values, bend, duration), .by_control = {}};
@@ -114,16 +114,16 @@ template <class V>
     result.by_control[i] = unit_travel(vehicle, i, 1.0, bend, duration);
   }
   BodyStep<double>& last = result.by_control[kLinear];
-  last = vehicle.travel_by_bend(first_of<kLinear>(control.values), bend, duration);
-  if constexpr (V::kTurnsByBend) {
-    const double scale = vehicle.bend_scale(duration);
+  last = vehicle.travel_by_angle(first_of<kLinear>(control.values), bend, duration);
+  if constexpr (V::kTurnsByAngle) {
+    const double scale = vehicle.angle_scale(duration);
     last = {last.forward * scale, last.left * scale, scale};
   }
   return result;
 }
 
 /// The control that turns a simulated vehicle to a way-point.
-inline Control steered(const Vehicle& vehicle, const Aim& aim) {
+inline Control steered(const Vehicle& vehicle, const PilotInput& aim) {
   return std::visit([&](const auto& one) { return one.steered(aim); }, vehicle);
 }
 

@@ -44,7 +44,7 @@ Column3<double> heading_column(const Symmetric3<double>& P) {
 }
 
 /// The bend at the sum of two angles.
-Bend<double> at_sum(const Bend<double>& a, const Bend<double>& b) {
+TurningAngle<double> at_sum(const TurningAngle<double>& a, const TurningAngle<double>& b) {
   const auto& [c, s] = a.direction;
   const auto& [d, t] = b.direction;
   return {a.angle + b.angle, {c * d - s * t, s * d + c * t}};
@@ -63,12 +63,12 @@ template <class V>
   constexpr std::size_t kLinear = kLinearOf<V>;
   const Pose& from = before.pose();
   const Column3<double> column = heading_column(before.covariance());
-  const double scale = vehicle.bend_scale(duration);
+  const double scale = vehicle.angle_scale(duration);
   const double angle = control[kLinear] * scale, spread = rule.spread * (sigma[kLinear] * scale);
   const auto [course, turn, ahead, aside] =
       directions_of<4>({from.heading, rule.spread * column.h, angle, spread});
-  const Bend<double> bend{angle, ahead};
-  const auto image = [&](const Bend<double>& at) {
+  const TurningAngle<double> bend{angle, ahead};
+  const auto image = [&](const TurningAngle<double>& at) {
     return column_of(body_step_at(vehicle, control.values, at, duration));
   };
   const Column3<double> centre = image(bend);
@@ -169,11 +169,11 @@ BodyMoments moments_of(const std::array<BodyPart<N>, Parts>& parts, const Contro
 /// is linear, per unit of that control, and one for the turn by the bend, relative to that of the
 /// central node. `bends` are those of the nodes.
 template <class V, std::size_t N>
-BodyMoments body_moments(const V& vehicle, const std::array<Bend<double>, N>& bends,
+BodyMoments body_moments(const V& vehicle, const std::array<TurningAngle<double>, N>& bends,
                          const Control& control, double duration, const ControlOf<double>& sigma,
                          const ControlRule<N>& rule) {
   constexpr std::size_t kLinear = kLinearOf<V>;
-  std::array<BodyPart<N>, kLinear + (V::kTurnsByBend ? 1 : 0)> parts;
+  std::array<BodyPart<N>, kLinear + (V::kTurnsByAngle ? 1 : 0)> parts;
   for (std::size_t i = 0; i < kLinear; ++i) {
     parts[i] = {.mean = control[i], .variance = sigma[i] * sigma[i], .at_node = {}};
     for (std::size_t k = 0; k < bends.size(); ++k) {
@@ -181,14 +181,14 @@ BodyMoments body_moments(const V& vehicle, const std::array<Bend<double>, N>& be
       parts[i].at_node[k] = {forward, left, turn};
     }
   }
-  if constexpr (V::kTurnsByBend) {
+  if constexpr (V::kTurnsByAngle) {
     parts.back() = {.mean = 1.0, .variance = 0.0, .at_node = {}};
     for (std::size_t k = 0; k < bends.size(); ++k) {
       parts.back().at_node[k] = {0.0, 0.0, bends[k].angle - bends[0].angle};
     }
   }
   BodyMoments moments = moments_of(parts, rule);
-  if constexpr (V::kTurnsByBend) moments.mean.h += bends[0].angle;
+  if constexpr (V::kTurnsByAngle) moments.mean.h += bends[0].angle;
   return moments;
 }
 
@@ -211,11 +211,11 @@ MotionIncrement moved_by_rule(const V& vehicle, const MotionIncrement& before,
   const Pose& from = before.pose();
   std::array<double, N + 1> angles;
   for (std::size_t k = 0; k < N; ++k) {
-    angles[k] = (control[kLast] + rule.nodes[k] * sigma[kLast]) * vehicle.bend_scale(duration);
+    angles[k] = (control[kLast] + rule.nodes[k] * sigma[kLast]) * vehicle.angle_scale(duration);
   }
   angles[N] = from.heading;
   const auto directions = directions_of<N + 1>(angles);
-  std::array<Bend<double>, N> bends;
+  std::array<TurningAngle<double>, N> bends;
   for (std::size_t k = 0; k < N; ++k) bends[k] = {angles[k], directions[k]};
   const Direction<double>& course = directions.back();
   const auto [way, moments] = body_moments(vehicle, bends, control, duration, sigma, rule);

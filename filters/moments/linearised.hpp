@@ -51,14 +51,14 @@ template <class Real>
 }
 
 /// The mask of all lanes, for a landmark that all particles match.
-struct Everywhere {};
+struct AllLanes {};
 template <class Mask>
-[[gnu::always_inline]] inline Mask operator&&(Everywhere, const Mask& mask) {
+[[gnu::always_inline]] inline Mask operator&&(AllLanes, const Mask& mask) {
   return mask;
 }
 /// 1 for the lanes of a mask, else 0.
 template <class Real>
-Real as_number(Everywhere) {
+Real as_number(AllLanes) {
   return Real(1.0);
 }
 template <class Real, class Mask>

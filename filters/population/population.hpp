@@ -328,7 +328,7 @@ class Population {
 
   /// Writes the requested columns of the particles. `pose_of(i)` is the pose of particle i.
   template <class PoseOf>
-  void tell(const ParticleColumns& columns, const PoseOf& pose_of) const {
+  void write_columns(const ParticleColumns& columns, const PoseOf& pose_of) const {
     for (std::size_t i = 0; i < columns.pose.size() / 3; ++i) {
       const Pose pose = pose_of(i);
       columns.pose[3 * i] = pose.x;

@@ -37,7 +37,7 @@ void RelativeEkfSlam::predict(const StepContext& /*context*/, const Control& con
 
 void RelativeEkfSlam::update(const StepContext& /*context*/, Scan scan) {
   report_ = {};
-  if (gaussian_.has_again()) joined_.move(motion_);
+  if (gaussian_.has_duplicates()) joined_.move(motion_);
   gaussian_.move(motion_);
   motion_.restart();
   is_at_scan_ = true;
@@ -45,7 +45,7 @@ void RelativeEkfSlam::update(const StepContext& /*context*/, Scan scan) {
   report_.association = association_.counts();
   condition(scan);
   initialise_landmarks(scan);
-  join();
+  merge_duplicates();
   report_.map_size = static_cast<double>(gaussian_.chain().landmarks.size());
 }
 
@@ -59,7 +59,7 @@ bool RelativeEkfSlam::is_bent(std::size_t landmark) const {
 /// landmarks will be initialised again.
 void RelativeEkfSlam::condition(Scan scan) {
   seen_.clear();
-  again_.clear();
+  duplicates_.clear();
   gaussian_.bends(bends_);
   for (std::size_t k = 0; k < scan.size(); ++k) {
     const Pairing& pairing = association_.pairings()[k];
@@ -67,7 +67,7 @@ void RelativeEkfSlam::condition(Scan scan) {
       report_.log_likelihood += association_.unmatched_log_density();
       continue;
     }
-    (is_bent(pairing.landmark) ? again_ : seen_)
+    (is_bent(pairing.landmark) ? duplicates_ : seen_)
         .push_back({pairing.landmark, observation_of(scan[k])});
   }
   const RelativeOutcome outcome = gaussian_.see(seen_, iterations_);
@@ -79,12 +79,12 @@ void RelativeEkfSlam::condition(Scan scan) {
 
 void RelativeEkfSlam::initialise_landmarks(Scan scan) {
   const auto is_fresh = [](const Pairing& pairing) { return pairing.kind == PairingKind::fresh; };
-  const bool any = !again_.empty() || std::ranges::any_of(association_.pairings(), is_fresh);
+  const bool any = !duplicates_.empty() || std::ranges::any_of(association_.pairings(), is_fresh);
   const bool has_room = gaussian_.chain().displacements.size() < most_frames_;
   if (any && !gaussian_.is_at_newest_frame() && (has_room || gaussian_.drop_empty_frame()))
     gaussian_.add_frame();
-  if (!gaussian_.has_again()) waited_ = 0;
-  for (const RelativeGaussian::Seen& seen : again_) gaussian_.add_again(seen);
+  if (!gaussian_.has_duplicates()) waited_ = 0;
+  for (const RelativeGaussian::Seen& seen : duplicates_) gaussian_.add_duplicate(seen);
   for (std::size_t k = 0; k < scan.size(); ++k) {
     if (!is_fresh(association_.pairings()[k])) continue;
     association_.add(scan[k]);
@@ -92,14 +92,14 @@ void RelativeEkfSlam::initialise_landmarks(Scan scan) {
   }
 }
 
-void RelativeEkfSlam::join() {
-  if (!gaussian_.has_again()) return;
+void RelativeEkfSlam::merge_duplicates() {
+  if (!gaussian_.has_duplicates()) return;
   bool is_joined;
   if (waited_++ < lag_) {
     joined_ = gaussian_;
-    is_joined = joined_.equate(iterations_);
+    is_joined = joined_.condition_on_equality(iterations_);
   } else {
-    is_joined = gaussian_.join(iterations_);
+    is_joined = gaussian_.merge_duplicates(iterations_);
   }
   if (!is_joined) ++report_.numerical_faults;
 }

@@ -33,8 +33,10 @@ class RelativeEkfSlam final : public SlamFilter {
   void condition(Scan scan);
   bool is_bent(std::size_t landmark) const;
   void initialise_landmarks(Scan scan);
-  void join();
-  const RelativeGaussian& reported() const { return gaussian_.has_again() ? joined_ : gaussian_; }
+  void merge_duplicates();
+  const RelativeGaussian& reported() const {
+    return gaussian_.has_duplicates() ? joined_ : gaussian_;
+  }
   JointEstimate moments_of(const RelativeGaussian& gaussian) const;
   JointEstimate held_joint() const;
 
@@ -50,10 +52,11 @@ class RelativeEkfSlam final : public SlamFilter {
   RelativeGaussian gaussian_;
   RelativeGaussian joined_;  ///< a copy with the landmarks joined that were initialised again
   std::size_t waited_ = 0;   ///< [scans] since the first of them
-  std::vector<RelativeGaussian::Seen> again_;  ///< detections of landmarks to be initialised again
-  std::vector<double> bends_;                  ///< {frame} RelativeGaussian::bends()
-  std::vector<RelativeGaussian::Seen> seen_;   ///< detections to be used
-  std::vector<NearestSearch> searches_;        ///< scratch, like the next three
+  std::vector<RelativeGaussian::Seen>
+      duplicates_;                            ///< detections of landmarks to be initialised again
+  std::vector<double> bends_;                 ///< {frame} RelativeGaussian::bends()
+  std::vector<RelativeGaussian::Seen> seen_;  ///< detections to be used
+  std::vector<NearestSearch> searches_;       ///< scratch, like the next three
   mutable RelativeGaussian moved_;
   mutable ChainMoments moments_;
   mutable std::vector<RelativeChain::Point> points_;

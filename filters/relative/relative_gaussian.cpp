@@ -125,7 +125,7 @@ void RelativeGaussian::add_landmark(const RangeBearing<double>& observed) {
   chain_.landmarks.push_back({add_point(observed), std::nullopt});
 }
 
-void RelativeGaussian::add_again(const Seen& seen) {
+void RelativeGaussian::add_duplicate(const Seen& seen) {
   chain_.landmarks[seen.landmark].again = add_point(seen.observed);
 }
 
@@ -157,7 +157,7 @@ const ChainPoint& RelativeGaussian::point(std::size_t landmark) const {
   return again ? *again : first;
 }
 
-bool RelativeGaussian::has_again() const {
+bool RelativeGaussian::has_duplicates() const {
   return std::ranges::any_of(chain_.landmarks,
                              [](const auto& landmark) { return landmark.again.has_value(); });
 }
@@ -257,7 +257,7 @@ bool RelativeGaussian::linearise(std::span<const Seen> scan, const Eigen::Vector
   return true;
 }
 
-bool RelativeGaussian::equate(int iterations) {
+bool RelativeGaussian::condition_on_equality(int iterations) {
   auto& twice = scratch_.twice;
   twice.clear();
   std::size_t oldest = chain_.newest_frame();
@@ -284,8 +284,8 @@ bool RelativeGaussian::equate(int iterations) {
   return !condition(chain_, measurement, iterations, scratch_.conditioning, mean_, P_).is_faulty;
 }
 
-bool RelativeGaussian::join(int iterations) {
-  const bool are_equal = equate(iterations);
+bool RelativeGaussian::merge_duplicates(int iterations) {
+  const bool are_equal = condition_on_equality(iterations);
   scratch_.is_kept.assign(static_cast<std::size_t>(rows_), true);
   for (auto& [first, again] : chain_.landmarks) {
     if (!again) continue;

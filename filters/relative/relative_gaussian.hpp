@@ -39,19 +39,19 @@ class RelativeGaussian {
   /// Adds a landmark, in the newest frame.
   void add_landmark(const RangeBearing<double>& observed);
   /// Initialises a landmark a second time, without use of its first coordinates.
-  void add_again(const Seen& seen);
+  void add_duplicate(const Seen& seen);
   /// Conditions on the equality of both positions of all landmarks that were initialised again.
   /// Returns false if that fails; nothing is changed then.
-  [[nodiscard]] bool equate(int iterations);
+  [[nodiscard]] bool condition_on_equality(int iterations);
   /// The same, after which the second coordinates are dropped or, if it failed, the first ones.
-  [[nodiscard]] bool join(int iterations);
+  [[nodiscard]] bool merge_duplicates(int iterations);
 
   const RelativeChain& chain() const { return chain_; }
   const Eigen::VectorXd& mean() const { return mean_; }
   const Eigen::MatrixXd& covariance() const { return P_; }
   /// The point of a landmark to which detections belong.
   const RelativeChain::Point& point(std::size_t landmark) const;
-  bool has_again() const;
+  bool has_duplicates() const;
   /// Writes {frame} [m] how far uncertain headings bend the path to each frame (EQUATIONS (22.4)).
   void bends(std::vector<double>& bends) const;
   using Expect =

@@ -116,7 +116,7 @@ void Smoother::predict(const StepContext& /*context*/, const Control& control, d
 
 void Smoother::update(const StepContext& /*context*/, Scan scan) {
   belief_.update_with(motion_, scan);
-  tell();
+  report_update();
   belief_.initialise_landmarks(scan);
   report_.map_size = static_cast<double>(belief_.gaussian().landmarks());
   add_factors(scan);
@@ -124,7 +124,7 @@ void Smoother::update(const StepContext& /*context*/, Scan scan) {
   if (is_due()) solve();
 }
 
-void Smoother::tell() {
+void Smoother::report_update() {
   report_ = {};
   report_.log_likelihood = belief_.outcome().log_likelihood;
   report_.numerical_faults = belief_.outcome().faults;

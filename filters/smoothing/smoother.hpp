@@ -56,7 +56,7 @@ class Smoother final : public SlamFilter {
 
  private:
   void add_factors(Scan scan);
-  void tell();
+  void report_update();
   bool is_due() const;
   bool has_moved(std::size_t landmark) const;
   void solve();

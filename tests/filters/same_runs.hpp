@@ -66,36 +66,36 @@ class ToldBits {
  public:
   /// All that `filter` tells after a scan; it has as many particles, or 0.
   ToldBits(const SlamFilter& filter, std::size_t particles, std::size_t landmarks) {
-    tell(filter.estimate());
-    tell(filter.report());
+    write_columns(filter.estimate());
+    write_columns(filter.report());
     write_particle_columns(filter, particles);
     std::vector<std::optional<LandmarkEstimate>> map(landmarks);
     filter.map(map);
     for (const auto& landmark : map) {
-      tell(static_cast<double>(landmark.has_value()));
+      write_columns(static_cast<double>(landmark.has_value()));
       if (!landmark) continue;
       tell_all(landmark->mean.reshaped()), tell_all(landmark->covariance.reshaped());
     }
   }
-  explicit ToldBits(const PoseEstimate& estimate) { tell(estimate); }
+  explicit ToldBits(const PoseEstimate& estimate) { write_columns(estimate); }
   friend bool operator==(const ToldBits&, const ToldBits&) = default;
 
  private:
-  void tell(double number) { bits_.push_back(std::bit_cast<std::uint64_t>(number)); }
+  void write_columns(double number) { bits_.push_back(std::bit_cast<std::uint64_t>(number)); }
   void tell_all(const auto& numbers) {
-    for (const double number : numbers) tell(number);
+    for (const double number : numbers) write_columns(number);
   }
-  void tell(const PoseMoments& m) {
-    tell(m.mean.x), tell(m.mean.y), tell(m.mean.heading);
+  void write_columns(const PoseMoments& m) {
+    write_columns(m.mean.x), write_columns(m.mean.y), write_columns(m.mean.heading);
     tell_all(m.covariance.reshaped());
   }
-  void tell(const PoseEstimate& estimate) {
-    tell(estimate.spread);
-    if (estimate.mixture) tell(*estimate.mixture);
+  void write_columns(const PoseEstimate& estimate) {
+    write_columns(estimate.spread);
+    if (estimate.mixture) write_columns(*estimate.mixture);
   }
-  void tell(const ScanReport& report) {
+  void write_columns(const ScanReport& report) {
     for (const engine::ColumnKind& column : engine::column_table()) {
-      if (column.of_report != nullptr) tell(column.of_report(report));
+      if (column.of_report != nullptr) write_columns(column.of_report(report));
     }
   }
   void write_particle_columns(const SlamFilter& filter, std::size_t particles) {

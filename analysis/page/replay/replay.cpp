@@ -91,7 +91,7 @@ ReplayCell read_cell(const ResultFile& file, std::size_t index, std::size_t run,
   replay.y = component(moments.mean, 1, frames);
   replay.h = component(moments.mean, 2, frames);
   replay.pose = pose_ellipses_at(moments, frames);
-  read_nees(rows, cell, drive_met_by(file, file.runs()[run]).scan_times, frames, replay);
+  read_nees(rows, cell, drive_of_run(file, file.runs()[run]).scan_times, frames, replay);
   replay.particles = read_particles(cell, rows, frames, size.particles);
   replay.has_ancestry = !rows.ancestor.empty();
   replay.maps = read_maps(file, cell, run, frames, size.ellipses);
@@ -109,7 +109,7 @@ ReplaySize share_of(const ReplaySize& size, std::size_t cells, std::size_t frame
 
 void add_surroundings(const ResultFile& file, std::size_t run, const Scans& frames,
                       Replay& replay) {
-  const auto times = drive_met_by(file, file.runs()[run]).scan_times;
+  const auto times = drive_of_run(file, file.runs()[run]).scan_times;
   for (const std::size_t s : frames) replay.times.push_back(times[s]);
   for (const auto& row : landmark_data(file, run).rows)
     replay.landmarks.emplace_back(row[0], row[1]);
@@ -152,7 +152,7 @@ double close_up_of(const Replay& replay) {
 }  // namespace
 
 Replay read_replay(const ResultFile& file, std::size_t run, const ReplaySize& size) {
-  const std::size_t scans = drive_met_by(file, file.runs()[run]).scan_times.size();
+  const std::size_t scans = drive_of_run(file, file.runs()[run]).scan_times.size();
   const Scans frames = frame_scans(scans, size.frames);
   Replay replay{file.runs()[run]};
   if (frames.empty()) return replay;

@@ -27,7 +27,7 @@ Pairing judged(std::initializer_list<Candidate> candidates) {
   for (const Candidate& c : candidates) {
     search.offer(landmark++, c.distance, c.distance + c.log_det, kNearest.gate);
   }
-  return judge(search, kNearest);
+  return decide_pairing(search, kNearest);
 }
 
 TEST(Nearest, AnEmptyMapMakesALandmark) { EXPECT_EQ(judged({}).kind, PairingKind::fresh); }

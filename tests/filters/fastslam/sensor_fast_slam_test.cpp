@@ -174,17 +174,16 @@ TEST(SensorFastSlam, SigmaPointsOfALinearModelAreTheKalmanFilter) {
     const SensorNoise noise{1e-5, kHasTwoComponents<Kind> ? 2e-5 : 1.0};
     Evidence<double> evidence, expected_evidence;
     PoseGaussian<double> refined = pose, expected = pose;
-    SigmaPointsOf<Kind>(points).refine(refined, landmark, seen, noise, Everywhere(), evidence);
-    LinearisedSensor<Kind>().refine(expected, landmark, seen, noise, Everywhere(),
-                                    expected_evidence);
+    SigmaPointsOf<Kind>(points).refine(refined, landmark, seen, noise, AllLanes(), evidence);
+    LinearisedSensor<Kind>().refine(expected, landmark, seen, noise, AllLanes(), expected_evidence);
     EXPECT_LT(boxminus(refined.mean, expected.mean).norm(), 1e-6) << Kind::kName;
     EXPECT_GT(boxminus(refined.mean, pose.mean).norm(), 2e-6) << Kind::kName;
     EXPECT_LT((symmetric(refined.covariance) - symmetric(expected.covariance)).norm(), 1e-11);
     EXPECT_NEAR(evidence.log_density(), expected_evidence.log_density(), 1e-2) << Kind::kName;
     LandmarkGaussian<double> moved = landmark, kalman = landmark;
     const auto v =
-        SigmaPointsOf<Kind>(points).update(moved, pose.mean, seen, noise, Everywhere(), evidence);
-    LinearisedSensor<Kind>().update(kalman, pose.mean, seen, noise, Everywhere(), evidence);
+        SigmaPointsOf<Kind>(points).update(moved, pose.mean, seen, noise, AllLanes(), evidence);
+    LinearisedSensor<Kind>().update(kalman, pose.mean, seen, noise, AllLanes(), evidence);
     EXPECT_NEAR(moved.mean.x, kalman.mean.x, 1e-5) << Kind::kName;
     EXPECT_NEAR(moved.mean.y, kalman.mean.y, 1e-5) << Kind::kName;
     EXPECT_NEAR(moved.covariance.xy, kalman.covariance.xy, 1e-9) << Kind::kName;

@@ -69,7 +69,8 @@ class Driven {
     const std::uint32_t slot = slot_of_[static_cast<std::size_t>(detection.identity)];
     ExpectedObservation expected;
     if (slot == kUnseen) return;
-    if (gaussian.look_at(slot, expected) != JointGaussian::Trouble::none) return;
+    if (gaussian.predict_observation(slot, expected) != JointGaussian::ObservationStatus::usable)
+      return;
     gaussian.update_with(slot, vector_of(detection), setting_.iterations, expected);
   }
 
@@ -100,7 +101,7 @@ void expect_equal_maps(const JointGaussian& plain, const CompressedGaussian& com
     EXPECT_LT((a.covariance - b.covariance).norm(), kRounding * a.covariance.norm());
     EXPECT_EQ(b.covariance, b.covariance.transpose());
     ExpectedObservation one, other;
-    ASSERT_EQ(plain.look_at(slot, one), compressed.look_at(slot, other));
+    ASSERT_EQ(plain.predict_observation(slot, one), compressed.predict_observation(slot, other));
     EXPECT_NEAR(one.factor.log_det(), other.factor.log_det(), kRounding) << "landmark " << slot;
   }
   const Eigen::Index rows = 2 * static_cast<Eigen::Index>(plain.landmarks());
@@ -180,7 +181,7 @@ TEST(CompressedGaussian, RestsWhereItSavesNothing) {
   EXPECT_LT((after.covariance - before.covariance).norm(), kRounding);
   ExpectedObservation expected;
   for (int look = 0; look < 6000; ++look) {
-    ASSERT_EQ(gaussian.look_at(0, expected), JointGaussian::Trouble::none);
+    ASSERT_EQ(gaussian.predict_observation(0, expected), JointGaussian::ObservationStatus::usable);
     gaussian.update_with(0, expected.observation, 0, expected);
   }
   gaussian.make_near({});
@@ -204,7 +205,8 @@ TEST(CompressedGaussian, WhatIsOutOfReachIsBeyondTheGate) {
         if (!gaussian.is_out_of_reach(slot, drift, kRange, kSigmas)) continue;
         ++out;
         ExpectedObservation expected;
-        ASSERT_EQ(gaussian.look_at(slot, expected), JointGaussian::Trouble::none);
+        ASSERT_EQ(gaussian.predict_observation(slot, expected),
+                  JointGaussian::ObservationStatus::usable);
         const Eigen::Vector2d nearest{kRange, expected.observation(1)};
         EXPECT_GT(expected.factor.whiten(expected.innovation(nearest)).norm(), kSigmas);
       }

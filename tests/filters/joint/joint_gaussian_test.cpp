@@ -62,7 +62,7 @@ TEST(JointGaussian, AnIteratedDetectionEndsAtTheTopOfThePosterior) {
   JointGaussian gaussian = driven(Retraction::additive);
   const Eigen::Vector2d detected{7.0, -1.6};
   ExpectedObservation expected;
-  ASSERT_EQ(gaussian.look_at(1, expected), JointGaussian::Trouble::none);
+  ASSERT_EQ(gaussian.predict_observation(1, expected), JointGaussian::ObservationStatus::usable);
   gaussian.update_with(1, detected, 60, expected);
   const Eigen::VectorXd x = mean_of(gaussian);
   const auto at = linearised_observation(Pose{x(0), x(1), x(2)}, Point{x(5), x(6)});
@@ -80,7 +80,7 @@ TEST(JointGaussian, AnIteratedDetectionEndsAtTheTopOfThePosterior) {
   EXPECT_LT(slope.norm(), 2e-4);
   EXPECT_GT((x - textbook.mean()).norm(), 0.5) << "hardly moved: no test";
   JointGaussian once = driven(Retraction::additive);
-  ASSERT_EQ(once.look_at(1, expected), JointGaussian::Trouble::none);
+  ASSERT_EQ(once.predict_observation(1, expected), JointGaussian::ObservationStatus::usable);
   once.update_with(1, detected, 0, expected);
   EXPECT_GT((mean_of(once) - x).norm(), 0.05) << "linear enough for one step: no test";
 }
@@ -97,7 +97,7 @@ TEST(JointGaussian, AnIteratedDetectionPassesTheBackwardDirection) {
   gaussian.append(Eigen::Vector2d{3.0, 0.0});
   gaussian.move(MotionIncrement(Pose{}, {.xx = 4.0, .yy = 4.0, .hh = 0.01}));
   ExpectedObservation expected;
-  ASSERT_EQ(gaussian.look_at(0, expected), JointGaussian::Trouble::none);
+  ASSERT_EQ(gaussian.predict_observation(0, expected), JointGaussian::ObservationStatus::usable);
   gaussian.update_with(0, Eigen::Vector2d{0.559, 1.107}, 20, expected);
   EXPECT_NEAR(gaussian.pose().mean.x, 2.75, 0.2);
   EXPECT_NEAR(gaussian.pose().mean.y, -0.5, 0.2);
@@ -137,9 +137,9 @@ TEST(Regression, OfAnObservationIsTheDerivativeWhereNoiseIsSmall) {
   gaussian.append(Eigen::Vector2d(5.0, 0.4));
   gaussian.move(MotionIncrement(Pose{2.0, 0.5, 0.3}, {.xx = 1e-10, .yy = 1e-10, .hh = 1e-10}));
   ExpectedObservation derived, regressed;
-  ASSERT_EQ(gaussian.look_at(0, derived), JointGaussian::Trouble::none);
-  ASSERT_EQ(gaussian.look_by_sigma_points(gaussian.point(0), regressed),
-            JointGaussian::Trouble::none);
+  ASSERT_EQ(gaussian.predict_observation(0, derived), JointGaussian::ObservationStatus::usable);
+  ASSERT_EQ(gaussian.predict_by_sigma_points(gaussian.point(0), regressed),
+            JointGaussian::ObservationStatus::usable);
   EXPECT_LT((regressed.pose_jacobian - derived.pose_jacobian).norm(), 1e-6);
   EXPECT_LT((regressed.landmark_jacobian - derived.landmark_jacobian).norm(), 1e-6);
   EXPECT_LT((regressed.observation - derived.observation).norm(), 1e-8);
@@ -148,9 +148,9 @@ TEST(Regression, OfAnObservationIsTheDerivativeWhereNoiseIsSmall) {
 TEST(Regression, ExpectsALongerRangeAndMoreNoiseThanTheDerivative) {
   const JointGaussian gaussian = uncertain(0.2);
   ExpectedObservation derived, regressed;
-  ASSERT_EQ(gaussian.look_at(0, derived), JointGaussian::Trouble::none);
-  ASSERT_EQ(gaussian.look_by_sigma_points(gaussian.point(0), regressed),
-            JointGaussian::Trouble::none);
+  ASSERT_EQ(gaussian.predict_observation(0, derived), JointGaussian::ObservationStatus::usable);
+  ASSERT_EQ(gaussian.predict_by_sigma_points(gaussian.point(0), regressed),
+            JointGaussian::ObservationStatus::usable);
   const PointMoments at = gaussian.point(0);
   const Pose& pose = gaussian.pose().mean;
   const Eigen::Vector2d away = at.mean - Eigen::Vector2d(pose.x, pose.y);

@@ -39,9 +39,10 @@ struct Plain {
       const std::size_t slot = slot_of(detection.identity);
       ExpectedObservation expected;
       if (slot == known) continue;
-      ASSERT_EQ(gaussian.look_at(slot, expected), JointGaussian::Trouble::none);
+      ASSERT_EQ(gaussian.predict_observation(slot, expected),
+                JointGaussian::ObservationStatus::usable);
       EXPECT_EQ(gaussian.update_with(slot, vector_of(detection), 0, expected),
-                JointGaussian::Trouble::none);
+                JointGaussian::ObservationStatus::usable);
     }
     for (const Detection& detection : scan) {
       if (std::ranges::find(identities, detection.identity) != identities.end()) continue;

@@ -61,9 +61,9 @@ class SquareRootForm : public testing::TestWithParam<Retraction> {
  protected:
   void update_with(std::size_t slot, const RangeBearing<double>& detected) {
     ExpectedObservation expected;
-    const auto trouble = gaussian.look_at(slot, expected);
-    if (trouble == JointGaussian::Trouble::faulty) ++comparison.faults;
-    if (trouble != JointGaussian::Trouble::none) return;
+    const auto status = gaussian.predict_observation(slot, expected);
+    if (status == JointGaussian::ObservationStatus::faulty) ++comparison.faults;
+    if (status != JointGaussian::ObservationStatus::usable) return;
     gaussian.update_with(slot, to_vector(detected), 0, expected);
     root.update_with(3 + 2 * static_cast<Eigen::Index>(slot), detected);
   }

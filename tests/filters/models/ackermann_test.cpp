@@ -153,17 +153,17 @@ TEST(DifferentialDrive, OfManyEulerStepsIsTheArc) {
 // Series and closed form agree where one gives way to the other; digits are kept below.
 TEST(MeanDirection, IsSmoothAtSmallTurns) {
   for (const double turn : {1e-3, -1e-3}) {
-    const auto below = mean_direction_by_turn(bend_of(turn * (1 - 1e-12)));
-    const auto above = mean_direction_by_turn(bend_of(turn * (1 + 1e-12)));
+    const auto below = mean_direction_by_turn(turning_angle_of(turn * (1 - 1e-12)));
+    const auto above = mean_direction_by_turn(turning_angle_of(turn * (1 + 1e-12)));
     EXPECT_NEAR(below.along, above.along, 1e-12);
     EXPECT_NEAR(below.across, above.across, 1e-12);
   }
   for (const double turn : {1e-300, 1e-12, -1e-8}) {
-    const auto [along, across] = mean_direction(bend_of(turn));
+    const auto [along, across] = mean_direction(turning_angle_of(turn));
     EXPECT_DOUBLE_EQ(across, turn / 2) << turn;
     EXPECT_NEAR(along, 1.0, 1e-10);
   }
-  const auto [along, across] = mean_direction(bend_of(0.0));
+  const auto [along, across] = mean_direction(turning_angle_of(0.0));
   EXPECT_EQ(along, 1.0);
   EXPECT_EQ(across, 0.0);
 }

@@ -36,7 +36,7 @@ std::map<int, Averages> watch(const Transform& transform, const Belief& belief) 
       if (n == 1) {
         landmark = transform.initialise(Pose(), seen, noise);
       } else {
-        transform.update(landmark, Pose(), seen, noise, Everywhere(), evidence);
+        transform.update(landmark, Pose(), seen, noise, AllLanes(), evidence);
       }
       const Eigen::Vector2d e = kTruth - to_vector(landmark.mean);
       after[n].nees += e.dot(symmetric(landmark.covariance).llt().solve(e)) / kRuns;

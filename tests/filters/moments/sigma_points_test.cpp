@@ -62,7 +62,7 @@ void expect_refined_as(const RandomObservation& c, const Image<7, 2>& image,
 
   PoseGaussian<double> pose = c.pose;
   Evidence<double> evidence;
-  points_by(rule, c.noise).refine(pose, c.landmark, c.seen, c.noise, Everywhere(), evidence);
+  points_by(rule, c.noise).refine(pose, c.landmark, c.seen, c.noise, AllLanes(), evidence);
   EXPECT_LT((plain::to_vector(pose.mean) - mean).norm(), 1e-11);
   EXPECT_LT((symmetric(pose.covariance) - P).norm(), 1e-12);
   EXPECT_NEAR(evidence.log_density(), plain::log_gaussian<2>(nu, image.covariance), 1e-9);
@@ -100,7 +100,7 @@ TEST(SigmaObservation, UpdatesALandmarkAsTheSquareRootRecursionDoes) {
     LandmarkGaussian<double> landmark = c.landmark;
     Evidence<double> evidence;
     points_by(central_difference_rule(kInterval), c.noise)
-        .update(landmark, c.pose.mean, c.seen, c.noise, Everywhere(), evidence);
+        .update(landmark, c.pose.mean, c.seen, c.noise, AllLanes(), evidence);
     EXPECT_LT((to_vector(landmark.mean) - mu - K * nu).norm(), 1e-12);
     EXPECT_LT((symmetric(landmark.covariance) - after * after.transpose()).norm(), 1e-12);
     EXPECT_NEAR(evidence.log_density(), plain::log_gaussian<2>(nu, S_y * S_y.transpose()), 1e-9);
@@ -132,8 +132,8 @@ TEST(SigmaObservation, OnLinearModelsEveryTransformIsTheKalmanFilter) {
          {unscented_rule(5, 0.9, 2, 0), central_difference_rule(kInterval)}) {
       PoseGaussian<double> sigma = c.pose, linear = c.pose;
       Evidence<double> of_bent, of_linear;
-      points_by(rule, c.noise).refine(sigma, c.landmark, c.seen, c.noise, Everywhere(), of_bent);
-      Linearised().refine(linear, c.landmark, c.seen, c.noise, Everywhere(), of_linear);
+      points_by(rule, c.noise).refine(sigma, c.landmark, c.seen, c.noise, AllLanes(), of_bent);
+      Linearised().refine(linear, c.landmark, c.seen, c.noise, AllLanes(), of_linear);
       EXPECT_LT(boxminus(sigma.mean, linear.mean).norm(), 1e-3 * scale);
       EXPECT_LT((symmetric(sigma.covariance) - symmetric(linear.covariance)).norm(),
                 1e-3 * scale * scale);
@@ -151,10 +151,10 @@ TEST(SigmaObservation, ALandmarkLeftOutOfTheProposalStaysInTheWeight) {
     sure.landmark.covariance = {};
     PoseGaussian<double> on = c.pose, off = c.pose, known = c.pose;
     Evidence<double> of_on, of_off, of_known;
-    points_by(rule, c.noise).refine(on, c.landmark, c.seen, c.noise, Everywhere(), of_on);
+    points_by(rule, c.noise).refine(on, c.landmark, c.seen, c.noise, AllLanes(), of_on);
     points_by(rule, c.noise, MapUncertainty::off)
-        .refine(off, c.landmark, c.seen, c.noise, Everywhere(), of_off);
-    points_by(rule, c.noise).refine(known, sure.landmark, c.seen, c.noise, Everywhere(), of_known);
+        .refine(off, c.landmark, c.seen, c.noise, AllLanes(), of_off);
+    points_by(rule, c.noise).refine(known, sure.landmark, c.seen, c.noise, AllLanes(), of_known);
     EXPECT_LT(boxminus(off.mean, known.mean).norm(), 1e-12);
     EXPECT_LT((symmetric(off.covariance) - symmetric(known.covariance)).norm(), 1e-12);
     EXPECT_NEAR(of_off.log_density(), of_on.log_density(), 1e-10);
@@ -206,7 +206,7 @@ TEST(SigmaInnovation, OfALandmarkAddsTheNoiseThatPointsWouldCarry) {
     LandmarkGaussian<double> landmark = c.landmark;
     Evidence<double> evidence;
     const auto v = points_by(central_difference_rule(kInterval), c.noise)
-                       .update(landmark, c.pose.mean, c.seen, c.noise, Everywhere(), evidence);
+                       .update(landmark, c.pose.mean, c.seen, c.noise, AllLanes(), evidence);
     expect_moments<4>(v, c, augmented);
   }
 }
@@ -280,13 +280,13 @@ TEST(LinearisedInnovation, IsThatOfPoseMapAndSensor) {
     const LinearObservation truth(c);
     PoseGaussian<double> pose = c.pose;
     Evidence<double> evidence;
-    const auto v = Linearised().refine(pose, c.landmark, c.seen, c.noise, Everywhere(), evidence);
+    const auto v = Linearised().refine(pose, c.landmark, c.seen, c.noise, AllLanes(), evidence);
     EXPECT_LT((covariance_of(v) - truth.whole()).norm(), 1e-13 * (1 + truth.whole().norm()));
     EXPECT_LT((cross_of(v) - truth.cross).norm(), 1e-13 * (1 + truth.cross.norm()));
     LandmarkGaussian<double> landmark = c.landmark;
     const Eigen::Matrix2d S = truth.of_map + truth.of_sensor;
     const auto of_known =
-        Linearised().update(landmark, c.pose.mean, c.seen, c.noise, Everywhere(), evidence);
+        Linearised().update(landmark, c.pose.mean, c.seen, c.noise, AllLanes(), evidence);
     EXPECT_LT((covariance_of(of_known) - S).norm(), 1e-13 * (1 + S.norm()));
   }
 }

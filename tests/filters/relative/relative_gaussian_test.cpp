@@ -117,11 +117,11 @@ TEST(RelativeGaussian, JoiningALandmarkThatWasInitialisedAgainIsSeeingIt) {
   ASSERT_FALSE(seen.see(scan, 20).is_faulty);
   joined.add_frame();
   seen.add_frame();
-  for (const auto& one : scan) joined.add_again(one);
-  EXPECT_TRUE(joined.has_again());
+  for (const auto& one : scan) joined.add_duplicate(one);
+  EXPECT_TRUE(joined.has_duplicates());
   EXPECT_EQ(joined.point(0).frame, 2U);
-  ASSERT_TRUE(joined.join(20));
-  EXPECT_FALSE(joined.has_again());
+  ASSERT_TRUE(joined.merge_duplicates(20));
+  EXPECT_FALSE(joined.has_duplicates());
   EXPECT_EQ(joined.point(0).frame, 0U);
   ASSERT_EQ(joined.mean().size(), seen.mean().size());
   const Eigen::VectorXd sigma = seen.covariance().diagonal().cwiseSqrt();
@@ -162,7 +162,7 @@ TEST(RelativeGaussian, OfSeveralFramesWithoutLandmarksTheStraightestIsDropped) {
     gaussian.move(motion(way, 0.0, 0.0, 1e-4));
     gaussian.add_frame();
   }
-  gaussian.add_again({0, {5.0, 0.1}});  // in the newest frame, which so is not empty
+  gaussian.add_duplicate({0, {5.0, 0.1}});  // in the newest frame, which so is not empty
   ASSERT_TRUE(gaussian.drop_empty_frame());
   ASSERT_EQ(gaussian.chain().displacements.size(), 3U);
   EXPECT_NEAR(displacement(gaussian.chain(), 0, gaussian.mean()).x, 3.0, 1e-12);
@@ -190,9 +190,9 @@ TEST(RelativeGaussian, WhereJoiningFailsTheFirstCoordinatesAreForgotten) {
   RelativeGaussian gaussian = gaussian_of({-1.0, 4e-4}, 1e-8);
   gaussian.add_frame();
   const Eigen::Index rows = gaussian.mean().size();
-  gaussian.add_again({0, {5.0, 0.1}});
-  EXPECT_FALSE(gaussian.join(20));
-  EXPECT_FALSE(gaussian.has_again());
+  gaussian.add_duplicate({0, {5.0, 0.1}});
+  EXPECT_FALSE(gaussian.merge_duplicates(20));
+  EXPECT_FALSE(gaussian.has_duplicates());
   EXPECT_EQ(gaussian.mean().size(), rows);
   EXPECT_EQ(gaussian.point(0).frame, 2U);
   EXPECT_EQ(gaussian.mean()(gaussian.point(0).row), 5.0);

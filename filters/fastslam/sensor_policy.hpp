@@ -102,11 +102,11 @@ class Mounted {
 };
 
 /// Range and bearing, measured at the pose of the vehicle.
-struct AtPose {
+struct SensorAtPose {
   using Kind = RangeBearingSensor;
-  explicit AtPose(const Sensor& sensor) {
+  explicit SensorAtPose(const Sensor& sensor) {
     expect(std::holds_alternative<RangeBearingSensor>(sensor.kind) && sensor.mounting.is_none(),
-           "AtPose is given another sensor than its FilterKind has in `sensors`");
+           "SensorAtPose is given another sensor than its FilterKind has in `sensors`");
   }
 
   template <class Gaussian>
@@ -140,11 +140,11 @@ class OnMounting {
   Mounting mounting_;
 };
 
-/// Calls `make` with AtPose or OnMounting for the given sensor.
+/// Calls `make` with SensorAtPose or OnMounting for the given sensor.
 template <class Make>
 auto with_sensor(const Sensor& sensor, const Make& make) {
   if (std::holds_alternative<RangeBearingSensor>(sensor.kind) && sensor.mounting.is_none())
-    return make(AtPose(sensor));
+    return make(SensorAtPose(sensor));
   return std::visit(
       [&](const auto& kind) { return make(OnMounting<std::decay_t<decltype(kind)>>(sensor)); },
       sensor.kind);
