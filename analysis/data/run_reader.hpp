@@ -20,7 +20,8 @@ struct RunDrive {
   std::span<const ReferencePath> references;  ///< of a recorded drive
 };
 
-/// Of run number `run` of the study, held by the file or not. The file must outlive it.
+/// The drive of run number `run` of the study, also if the file does not hold that run. The file
+/// must outlive it.
 inline RunDrive drive_of_run(const ResultFile& file, std::uint64_t run) {
   const ResultDescription& all = file.description();
   if (all.drives.empty()) return {all.scan_times, all.scan_steps, all.start, all.references};
@@ -64,7 +65,7 @@ class RunReader {
   template <class Number>
   void read_scans(std::string_view column, std::size_t width, std::size_t i,
                   std::vector<Number>& out) const;
-  /// Of run index `i`: a shorter drive than others has fewer than the file.
+  /// Number of scans of run index `i`. A drive shorter than others has fewer than the file.
   std::size_t scans_of(std::size_t i) const;
   /// Leaves of rows of `width` numbers those at the scans of run index `i`.
   void keep_scans(std::size_t width, std::size_t i, std::vector<double>& rows) const;

@@ -41,7 +41,7 @@ class CellSums {
   void add(const MeasuredRun& run);
   /// Adds the sums over the runs behind these.
   void merge(const CellSums& next);
-  /// Of the runs so far.
+  /// Scores of the runs so far.
   const ScoreTable& scores() const { return scores_; }
   /// Fills all that complete runs say; label, failures and missing runs are there already.
   void put(CellAnalysis& cell);
@@ -51,7 +51,8 @@ class CellSums {
 
   double level_;
   ScoreTable scores_;
-  /// Of all_scan_series(); none where runs are drives of their own, scanned at other times.
+  /// One for each of all_scan_series(); none if runs are drives of their own, since their scans are
+  /// at other times.
   std::vector<MeanOverTime> over_time_;
   std::vector<std::unique_ptr<MetricSums>> metrics_;  ///< those that have any
 };

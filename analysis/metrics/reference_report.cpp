@@ -226,7 +226,7 @@ void add(const std::string& name, const std::string& units, const Spread& spread
   all.push_back({name + "_greatest", units, spread.greatest});
 }
 
-/// Of the map, which is the same against every reference.
+/// Numbers of the map, which are the same against every reference.
 bool is_of_the_map(const std::string& name) {
   return name.starts_with("map_") || name.starts_with("beacon");
 }
@@ -355,7 +355,7 @@ std::vector<Figure> reference_figures(const StudyAnalysis& study) {
 
 namespace {
 
-/// By the leading reference.
+/// The comparison uses the leading reference.
 template <double ReferenceScores::*kValue>
 double of_reference(const MeasuredRun& run) {
   return run.references.empty() ? kNaN : run.references.front().scores.*kValue;

@@ -19,7 +19,7 @@ double scan_time(const RunDrive& drive, std::uint32_t step) {
   return drive.scan_times[std::min(static_cast<std::size_t>(scan), drive.scan_steps.size() - 1)];
 }
 
-/// Of a power cut the work in progress may have kept a fingerprint whose run is missing.
+/// Unfinished work may have a fingerprint without its run, after a power cut.
 bool is_work_in_progress(const std::filesystem::path& path) {
   return path.filename().string().find(".part") != std::string::npos;
 }

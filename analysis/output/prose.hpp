@@ -34,7 +34,7 @@ using Values = std::vector<std::pair<std::string_view, std::string>>;
 std::vector<std::string> paragraphs(std::string_view name, std::string_view key,
                                     const Values& values = {});
 
-/// As paragraphs(), of a key that has only one.
+/// The single paragraph of a key that has one; otherwise like paragraphs().
 std::string prose(std::string_view name, std::string_view key, const Values& values = {});
 
 /// The name of the file that has `## key`, of which there is one.

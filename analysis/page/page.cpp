@@ -85,7 +85,7 @@ std::string html_figures(const Section& section, const fs::path& directory) {
   return html;
 }
 
-/// Of a table or HTML; notes are opened by a "?", and cards say what leads say.
+/// HTML of a table or of HTML. Notes are opened by a "?", and cards have the text of leads.
 struct HtmlOf {
   std::string operator()(const Section::Table& table) const { return html_table(table.table); }
   std::string operator()(const Section::Html& html) const { return html.text; }

@@ -87,7 +87,7 @@ void print_cautions(std::ostream& out, const StudyAnalysis& study, std::size_t w
   if (!sentences.empty()) out << '\n';
 }
 
-/// Of a recorded drive without a true path, what its references say.
+/// Sections with the references of a recorded drive without a true path.
 bool is_in_summary(const Section& section) {
   return section.name == "drive" || section.name == "references";
 }

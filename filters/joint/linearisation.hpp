@@ -89,7 +89,7 @@ std::unique_ptr<Linearisation> at_first_estimates();
 std::unique_ptr<Linearisation> at_constrained_estimates();
 /// At the latest estimate, with errors relative to the vehicle (Castellanos et al., RAS 2007).
 std::unique_ptr<Linearisation> relative_to_vehicle();
-/// By regression on sigma points, as in the unscented Kalman filter.
+/// Regression on sigma points, as in the unscented Kalman filter.
 std::unique_ptr<Linearisation> by_sigma_points();
 
 }  // namespace montecarta::filters

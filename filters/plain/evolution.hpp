@@ -25,7 +25,7 @@ class Evolution {
   Member half = Member::Zero();  ///< half the sides of the box around the origin
   bool last_is_an_angle = false;
 
-  // Of all decisions whether a trial replaces a member, so that a test can tell if rounding
+  // All decisions whether a trial replaces a member, so that a test can tell if rounding
   // decided.
   std::size_t accepted = 0;
   std::size_t decisions = 0;

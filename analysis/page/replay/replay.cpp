@@ -275,7 +275,7 @@ void tie_to_parents(const StoredParticles& stored, std::span<const std::size_t> 
   }
 }
 
-/// Of the particles that are shown, by the heaviest of all.
+/// Weights of the particles that are shown, divided by the largest one.
 void add_weights(const StoredParticles& stored, std::size_t scan, ReplayParticles::Frame& frame) {
   if (stored.log_weight.empty()) return;
   const auto all = stored.log_weight.subspan(scan * stored.count, stored.count);

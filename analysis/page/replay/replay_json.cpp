@@ -60,7 +60,7 @@ double reach_of(const ReplayParticles::Frame& frame, double x, double y) {
   return 1.0001 * size + 1e-9;
 }
 
-/// Of each particle: x and y by the estimate, four digits; its parent, two; the root of its
+/// Each particle: x and y by the estimate, four digits; its parent, two; the root of its
 /// weight, as dark as it is drawn, one.
 Json json_of(const ReplayParticles::Frame& frame, double x, double y) {
   const double size = reach_of(frame, x, y);

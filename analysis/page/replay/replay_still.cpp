@@ -160,7 +160,7 @@ void draw_ellipse(const Ellipse& e, const std::string& colour, const View& view,
                       "\" stroke-width=\"1.1\"");
 }
 
-/// As the map is after the last change.
+/// The map after its last change.
 void draw_map(const ReplayCell& cell, const std::string& colour, const View& view,
               Drawing& drawing) {
   std::vector<ReplayMap::Landmark> latest;

@@ -235,7 +235,7 @@ TEST(JointTable, IsFarthestWhereThereIsANumber) {
 TEST(JointTable, SaysWhatWasLeftOut) {
   StudyAnalysis study = study_of_two();
   EXPECT_THAT(reported_notes(study, "joint_nees"),
-              ElementsAre(HasSubstr("all 2 stored scans"), HasSubstr("of 40 joint covariances 1")));
+              ElementsAre(HasSubstr("all 2 stored scans"), HasSubstr("1 of 40 joint covariances")));
   study.cells[0].findings.put(JointConsistency{});
   EXPECT_THAT(reported_notes(study, "joint_nees"), IsEmpty());
   EXPECT_THAT(reported_table(study, "joint_nees").rows, IsEmpty());

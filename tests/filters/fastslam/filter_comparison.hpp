@@ -53,7 +53,7 @@ inline FilterSetup setup_of(const Variant& v, const SmallWorldSettings& world) {
           .landmarks = world.landmarks};
 }
 
-/// As users get it: over lanes.
+/// The filter that users get, over lanes.
 inline std::unique_ptr<SlamFilter> make_production(const Variant& v,
                                                    const SmallWorldSettings& world) {
   return kind_of(v).make(setup_of(v, world));

@@ -30,7 +30,7 @@ class DenseSmoother {
     }
     for (int step = 0; step < steps; ++step) take_step();
   }
-  /// Of the poses `chosen`, and all landmarks.
+  /// Moments of the poses `chosen` and of all landmarks.
   Eigen::MatrixXd covariance(const std::vector<std::size_t>& chosen) const {
     const Eigen::Index n = x.size();
     std::vector<Eigen::Index> rows;
