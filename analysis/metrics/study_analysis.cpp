@@ -7,6 +7,7 @@
 #include "analysis/metrics/imported_estimates.hpp"
 #include "engine/errors.hpp"
 #include "engine/runs/monte_carlo.hpp"
+#include "engine/threads/in_order.hpp"
 
 #include <algorithm>
 
@@ -80,7 +81,8 @@ struct CellTask {
     complete = complete_runs(file, stored, runs, cell);
   }
 
-  void put(CellSums& sums) {
+  /// Releases the sums, which hold the errors of many runs.
+  void put(CellSums sums) {
     sums.put(cell);
     cell.verdict.runs = cell.complete + cell.failures.size();
     cell.verdict.failed = cell.failures.size();
@@ -189,13 +191,16 @@ StudyAnalysis analyze(const ResultFile& file, double level, const Parallel& para
   for (const StoredCell& cell : file.cells()) tasks.emplace_back(file, cell, file.runs().size());
   std::vector<CellSums> sums = sums_of_tasks(tasks, criteria, parallel);
   BoundOfStudy bound(file);
-  parallel.for_each(tasks.size() + bound.paths(), [&](std::size_t k) {
-    if (k < tasks.size()) {
-      tasks[k].put(sums[k]);
-    } else {
+  const auto finish = [&](std::size_t k) {
+    if (k >= tasks.size()) {
       bound.follow(k - tasks.size());
+      return k;
     }
-  });
+    tasks[k].put(std::move(sums[k]));
+    return k;
+  };
+  for_each_in_order(parallel, tasks.size() + bound.paths(), finish,
+                    [](std::size_t, std::size_t) {});
   for (CellTask& task : tasks) study.cells.push_back(std::move(task.cell));
   study.bound = bound.result();
   for (CellAnalysis& cell : study.cells) {
@@ -211,7 +216,7 @@ CellAnalysis analyze_cell(const ResultFile& file, const StoredCell& cell, double
   const RunCriteria criteria = criteria_of(file, level, margin_of(file, within));
   CellTask task(file, cell, runs);
   const CellRuns all{&task.reader, task.complete, task.cell.particles};
-  task.put(sums_of(std::span(&all, 1), criteria, parallel).front());
+  task.put(std::move(sums_of(std::span(&all, 1), criteria, parallel).front()));
   return std::move(task.cell);
 }
 

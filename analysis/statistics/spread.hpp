@@ -60,6 +60,10 @@ class SummaryOf {
   /// Adds the sums over values behind these (Chan, Golub and LeVeque 1979).
   void merge(const SummaryOf& next) {
     if (next.n_ == 0) return;
+    if (n_ == 0) {
+      *this = next;
+      return;
+    }
     const auto n = static_cast<double>(n_), more = static_cast<double>(next.n_);
     const double difference = next.mean_ - mean_;
     n_ += next.n_;

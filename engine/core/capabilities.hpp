@@ -3,8 +3,8 @@
 
 namespace montecarta::engine {
 
-/// The estimates of a filter besides the spread of its pose. The filter declares them, and the
-/// engine stores the columns that they have.
+/// The estimates of a filter besides the spread of its pose. The filter declares them; a study
+/// stores the columns of a mixture, a joint estimate or the rotation information if they are there.
 struct Capabilities {
   bool particles = false;
   bool mixture = false;               ///< estimate() has a mixture before sampling

@@ -28,6 +28,8 @@ class StopFlag {
 /// The context of one step of a filter: its place in the study, random streams, and threads.
 class StepContext {
  public:
+  /// `parallel` and `stop` must outlive the run, since a filter may keep the context until the next
+  /// start().
   StepContext(std::uint64_t seed, std::uint64_t run, std::uint32_t step, const Parallel& parallel,
               const StopFlag* stop = nullptr)
       : seed_(seed), run_(run), step_(step), parallel_(&parallel), stop_(stop) {}

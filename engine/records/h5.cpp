@@ -407,6 +407,14 @@ void write_text(const Handle& dataset, const std::string& text) {
         dataset, "");
 }
 
+std::string file_name(const Handle& object) {
+  const auto length = check(H5Fget_name(object.id(), nullptr, 0), "read the name of", object, "");
+  std::string name(static_cast<std::size_t>(length) + 1, '\0');
+  H5Fget_name(object.id(), name.data(), name.size());
+  name.pop_back();
+  return name;
+}
+
 std::optional<std::uint64_t> place(const Handle& dataset) {
   static_assert(std::is_same_v<Shape::value_type, hsize_t>);
   const haddr_t address = H5Dget_offset(dataset.id());

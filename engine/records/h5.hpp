@@ -80,6 +80,8 @@ Handle create_text(const Handle& parent, const std::string& name, std::size_t wi
 Handle open_dataset(const Handle& parent, const std::string& name);
 void write(const Handle& dataset, Element element, const void* values);
 void write_text(const Handle& dataset, const std::string& text);
+/// Name of the file that an object is in, which is another one behind an external link.
+std::string file_name(const Handle& object);
 /// Offset of the elements in the file [byte]; nullopt if they are not contiguous.
 std::optional<std::uint64_t> place(const Handle& dataset);
 /// Size of the elements in the file [byte].

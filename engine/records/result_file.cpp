@@ -41,7 +41,9 @@ struct ResultFile::Contents {
   }
 
   RunDataset open(const std::string& name) const {
-    return RunDataset(h5::open_dataset(file, name), bytes);
+    h5::Handle dataset = h5::open_dataset(file, name);
+    const bool is_here = h5::file_name(dataset) == h5::file_name(file);  // no link to another file
+    return RunDataset(std::move(dataset), is_here ? &bytes : nullptr);
   }
 
   void open_columns(const StoredCell& cell, const std::string& group,

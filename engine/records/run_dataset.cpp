@@ -10,6 +10,8 @@
 namespace montecarta::engine {
 namespace {
 
+std::mutex reading_by_hdf5;  // the library may be built for one thread
+
 /// Where the rows lie; nullopt if they are not in one piece, or not all inside a file of
 /// `file_bytes`.
 std::optional<Slab> rows_of(const h5::Handle& dataset, std::uint64_t file_bytes) {
@@ -23,6 +25,8 @@ std::optional<Slab> rows_of(const h5::Handle& dataset, std::uint64_t file_bytes)
 
 template <class Stored, class Number>
 void read_as(const PosixFile& file, std::uint64_t offset, std::span<Number> out) {
+  if constexpr (std::is_same_v<Stored, Number>)
+    return file.read_at(offset, std::as_writable_bytes(out));
   thread_local std::vector<Stored> longest;
   if (longest.size() < out.size()) longest.resize(out.size());
   const auto row = std::span(longest).first(out.size());
@@ -32,11 +36,11 @@ void read_as(const PosixFile& file, std::uint64_t offset, std::span<Number> out)
 
 }  // namespace
 
-RunDataset::RunDataset(h5::Handle dataset, const PosixFile& file)
+RunDataset::RunDataset(h5::Handle dataset, const PosixFile* file)
     : dataset_(std::move(dataset)),
       element_(h5::element(dataset_)),
-      slab_(rows_of(dataset_, file.size())),
-      file_(&file) {}
+      slab_(file != nullptr ? rows_of(dataset_, file->size()) : std::nullopt),
+      file_(file) {}
 
 template <class Number>
 bool RunDataset::read_in_one_piece(std::uint64_t i, std::span<Number> out) const {
@@ -50,7 +54,7 @@ bool RunDataset::read_in_one_piece(std::uint64_t i, std::span<Number> out) const
   } else if (*element_ == Element::u32) {
     read_as<std::uint32_t>(*file_, offset, out);
   } else if (*element_ == Element::f64 && std::is_same_v<Number, double>) {
-    file_->read_at(offset, std::as_writable_bytes(out));
+    read_as<double>(*file_, offset, out);
   } else {
     return false;
   }
@@ -60,8 +64,7 @@ bool RunDataset::read_in_one_piece(std::uint64_t i, std::span<Number> out) const
 template <class Number>
 void RunDataset::read(std::uint64_t i, std::span<Number> out) const {
   if (read_in_one_piece(i, out)) return;
-  static std::mutex hdf5;  // the library may be built for one thread
-  const std::lock_guard lock(hdf5);
+  const std::lock_guard lock(reading_by_hdf5);
   constexpr auto element = std::is_same_v<Number, double> ? Element::f64 : Element::u32;
   h5::read_row(dataset_, i, element, std::as_writable_bytes(out));
 }

@@ -16,8 +16,9 @@ namespace montecarta::engine {
 /// one at a time.
 class RunDataset {
  public:
-  /// `file` must outlive it.
-  RunDataset(h5::Handle dataset, const PosixFile& file);
+  /// `file` has the bytes of the dataset and must outlive it. If it is nullptr, HDF5 reads all
+  /// rows.
+  RunDataset(h5::Handle dataset, const PosixFile* file);
 
   /// Row `i`, converted to double or std::uint32_t. Throws StudyError unless `out` fits.
   template <class Number>

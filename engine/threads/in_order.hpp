@@ -32,8 +32,8 @@ class TakenInOrder {
   /// Takes result `i` and those that waited for it alone. It is an exception where it is nullopt.
   void finish(std::size_t i, std::optional<Result> result, std::exception_ptr exception) {
     const std::lock_guard lock(mutex_);
-    waiting_.emplace(i, Made{std::move(result), std::move(exception)});
     try {
+      waiting_.emplace(i, Made{std::move(result), std::move(exception)});
       for (; !failure_ && !waiting_.empty() && waiting_.begin()->first == taken_; ++taken_) {
         Made next = std::move(waiting_.extract(waiting_.begin()).mapped());
         if (!next.result) std::rethrow_exception(next.exception);

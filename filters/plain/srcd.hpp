@@ -13,9 +13,9 @@ struct SrcdParts {
   bool map = true;
 };
 
-/// SRCD-FastSLAM (EQUATIONS 8; Ankishan et al. 2016) as printed and corrected: points of the
-/// papers' seven dimensions, and only square roots from scan to scan. Covariances are formed for
-/// reports.
+/// SRCD-FastSLAM (EQUATIONS 8; Ankishan et al. 2016) as printed and corrected. Poses and landmarks
+/// keep square roots from scan to scan; their covariances are formed to draw a pose, to associate,
+/// for the weight `ratio` and for reports.
 class Srcd : public FastSlam2 {
  public:
   explicit Srcd(const FilterSetup& setup, const SrcdParts& parts)

@@ -7,8 +7,9 @@
 namespace montecarta::filters::plain {
 
 /// U-FastSLAM (EQUATIONS 7; Kim et al. 2008): FastSLAM II with the unscented transform at every
-/// stage. Motion and pose have the points of the paper, whose vectors include the noise of the
-/// sensor; landmarks have five points of two dimensions.
+/// stage. The vectors of motion and pose include the noise of the sensor, as in the paper; for a
+/// car they have its seven dimensions, in which the landmark takes the place of the control noise.
+/// Landmarks have five points of two dimensions.
 class UFastSlam : public FastSlam2 {
  public:
   explicit UFastSlam(const FilterSetup& setup)
@@ -17,7 +18,8 @@ class UFastSlam : public FastSlam2 {
                   setup.options.number("kappa")},
         augmented_(landmark_),
         map_uncertainty_(setup.options.choice("map_uncertainty") == "on") {
-    augmented_.kappa -= 2.0;  // the distance of points without the noise of the sensor
+    // The points are as far as those of the five dimensions of EQUATIONS 7.
+    augmented_.kappa -= 2.0;
   }
 
  protected:
