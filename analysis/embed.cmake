@@ -31,14 +31,13 @@ function(append_text name constant files)
 endfunction()
 
 function(append_prose files)
-  file(APPEND ${SOURCE} "\nstd::span<const ProseFile> prose_files() {\n"
-                        "  static constexpr ProseFile kFiles[] = {\n")
+  file(APPEND ${SOURCE} "\nstatic constexpr ProseFile kProseFiles[] = {\n")
   foreach(path IN LISTS files)
     get_filename_component(name ${path} NAME_WE)
     read_as_constants(${path} pieces)
     file(APPEND ${SOURCE} "{\"${name}\",${pieces}},\n")
   endforeach()
-  file(APPEND ${SOURCE} "};\n  return kFiles;\n}\n")
+  file(APPEND ${SOURCE} "};\n\nstd::span<const ProseFile> prose_files() { return kProseFiles; }\n")
 endfunction()
 
 separate_arguments(STYLES)

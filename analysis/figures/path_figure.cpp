@@ -346,7 +346,7 @@ std::string sentence_of(const ResultFile& file, std::size_t run_index, std::size
   if (file.has_truth()) {
     return prose("paths", "simulated", {{"run", run}, {"moments", std::to_string(kPoseEllipses)}});
   }
-  const std::string sentence = prose("paths", "recorded", {{"run", run}});
+  std::string sentence = prose("paths", "recorded", {{"run", run}});
   if (cells != kMostRecordedPanels) return sentence;
   return sentence + " " + prose("paths", "first cells", {{"cells", std::to_string(cells)}});
 }

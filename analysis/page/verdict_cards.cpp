@@ -90,7 +90,7 @@ struct Sparkline {
   std::string bars(const Verdict& verdict) const {
     for (const Family family : {Family::stretch, Family::scan}) {
       const FamilyTest* test = verdict.find(family);
-      const std::string html = test == nullptr ? "" : bars_of(*test);
+      std::string html = test == nullptr ? "" : bars_of(*test);
       if (!html.empty()) return html;
     }
     return "";

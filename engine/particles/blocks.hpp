@@ -25,8 +25,8 @@ constexpr std::size_t blocks_for(std::size_t particles) {
 template <class T>
 struct UntouchedAllocator : std::allocator<T> {
   template <class U>
-  struct rebind {
-    using other = UntouchedAllocator<U>;
+  struct rebind {  // NOLINT(readability-identifier-naming): a name of the standard's
+    using other = UntouchedAllocator<U>;  // NOLINT(readability-identifier-naming)
   };
   template <class U>
   void construct(U* /*element*/) const noexcept {}

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <ranges>
 #include <utility>
 #include <vector>
 
@@ -71,9 +70,16 @@ void sweep(const StepContext& context, std::size_t last, const Share& share, con
   const std::vector<double> before = sums_before_parts(context, share, last + 1);
   const auto first_child = [&](std::size_t part) {  // the first new particle beyond those before
     if (part == before.size()) return parents.size();
-    const auto all = std::views::iota(0U, static_cast<std::uint32_t>(parents.size()));
-    return static_cast<std::size_t>(std::ranges::lower_bound(all, before[part], {}, place) -
-                                    all.begin());
+    std::size_t first = 0, end = parents.size();
+    while (first < end) {
+      const std::size_t middle = (first + end) / 2;
+      if (place(static_cast<std::uint32_t>(middle)) < before[part]) {
+        first = middle + 1;
+      } else {
+        end = middle;
+      }
+    }
+    return first;
   };
   context.parallel_for(before.size(), [&](std::size_t part) {
     const std::size_t first = part * kParticlesPerSum;

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <ranges>
 #include <stdexcept>
 #include <vector>
 
@@ -85,14 +84,13 @@ class Weights {
     std::size_t particle = 0;
   };
 
-  /// Indices of the particles of n blocks, without dead lanes.
-  auto particles_of(std::size_t first, std::size_t n) const {
-    return std::views::iota(first * kLanesOf<Real>,
-                            std::min(particles_, (first + n) * kLanesOf<Real>));
+  /// The particle behind the last one of n blocks, without dead lanes.
+  std::size_t end_of(std::size_t first, std::size_t n) const {
+    return std::min(particles_, (first + n) * kLanesOf<Real>);
   }
   Peak peak_of(std::size_t first, std::size_t n) const {
     Peak peak;
-    for (const std::size_t i : particles_of(first, n)) {
+    for (std::size_t i = first * kLanesOf<Real>; i < end_of(first, n); ++i) {
       const double weight = log_scalars()[i];
       if (std::isnan(weight)) throw std::runtime_error("a particle's weight is not a number");
       if (weight > peak.log_weight) peak = {weight, i};
@@ -102,7 +100,8 @@ class Weights {
   template <class Term>
   double sum_of(std::size_t first, std::size_t n, const Term& term) const {
     double sum = 0.0;
-    for (const std::size_t i : particles_of(first, n)) sum += term(linear_scalars()[i]);
+    for (std::size_t i = first * kLanesOf<Real>; i < end_of(first, n); ++i)
+      sum += term(linear_scalars()[i]);
     return sum;
   }
   double sum_of_squares(std::size_t first, std::size_t n) const {
