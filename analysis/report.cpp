@@ -12,7 +12,6 @@
 #include "analysis/page/replay/replay.hpp"
 #include "analysis/tables/tables.hpp"
 #include "engine/errors.hpp"
-#include "engine/threads/in_order.hpp"
 #include "engine/wrapped_text.hpp"
 
 #include <algorithm>
@@ -101,11 +100,7 @@ void draw_figures(const std::vector<Section>& sections, const fs::path& director
   for (const Section& section : sections) {
     for (const Figure& figure : section.figures) figures.push_back(&figure);
   }
-  const auto draw_one = [&](std::size_t i) {
-    draw(*figures[i], directory);
-    return i;
-  };
-  for_each_in_order(parallel, figures.size(), draw_one, [](std::size_t, std::size_t) {});
+  parallel.for_each(figures.size(), [&](std::size_t i) { draw(*figures[i], directory); });
 }
 
 }  // namespace

@@ -38,6 +38,9 @@ class RunReader {
  public:
   RunReader(const ResultFile& file, const StoredCell& cell, Reach reach = Reach::every_run);
 
+  /// Number of particles of the cell; 0 if it has none.
+  std::size_t particles() const { return cell_->particles; }
+
   /// Memory for what is read and not kept.
   using Scratch = std::vector<double>;
 

@@ -116,7 +116,7 @@ CellSums sums_of_block(const CellRuns& cell, std::span<const std::size_t> runs,
   MeasuredRun run;
   for (const std::size_t i : runs) {
     cell.reader->read(i, run.rows, run.scratch);
-    run.measure(criteria, cell.particles);
+    run.measure(criteria, cell.reader->particles());
     sums.add(run);
   }
   return sums;
@@ -145,7 +145,7 @@ std::vector<double> first_values(const ResultFile& file, const StoredCell& cell,
   }
   const RunCriteria criteria = criteria_of(file, 0.95);
   const RunReader reader(file, cell);
-  const CellRuns all{&reader, complete, cell.particles};
+  const CellRuns all{&reader, complete};
   return sums_of({&all, 1}, criteria, parallel).front().scores().column(score.name);
 }
 

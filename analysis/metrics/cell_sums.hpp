@@ -66,7 +66,6 @@ inline constexpr std::size_t kRunsOfABlock = 64;
 struct CellRuns {
   const RunReader* reader;
   std::span<const std::size_t> runs;
-  std::size_t particles;
 };
 
 /// {cell} The sums over the runs of each cell. There are never more than two blocks in memory for

@@ -7,7 +7,6 @@
 #include "analysis/metrics/imported_estimates.hpp"
 #include "engine/errors.hpp"
 #include "engine/runs/monte_carlo.hpp"
-#include "engine/threads/in_order.hpp"
 
 #include <algorithm>
 
@@ -97,7 +96,7 @@ std::vector<CellSums> sums_of_tasks(const std::vector<CellTask>& tasks, const Ru
                                     const Parallel& parallel) {
   std::vector<CellRuns> runs;
   for (const CellTask& task : tasks) {
-    runs.push_back({&task.reader, task.complete, task.cell.particles});
+    runs.push_back({&task.reader, task.complete});
   }
   return sums_of(runs, criteria, parallel);
 }
@@ -191,16 +190,13 @@ StudyAnalysis analyze(const ResultFile& file, double level, const Parallel& para
   for (const StoredCell& cell : file.cells()) tasks.emplace_back(file, cell, file.runs().size());
   std::vector<CellSums> sums = sums_of_tasks(tasks, criteria, parallel);
   BoundOfStudy bound(file);
-  const auto finish = [&](std::size_t k) {
-    if (k >= tasks.size()) {
+  parallel.for_each(tasks.size() + bound.paths(), [&](std::size_t k) {
+    if (k < tasks.size()) {
+      tasks[k].put(std::move(sums[k]));
+    } else {
       bound.follow(k - tasks.size());
-      return k;
     }
-    tasks[k].put(std::move(sums[k]));
-    return k;
-  };
-  for_each_in_order(parallel, tasks.size() + bound.paths(), finish,
-                    [](std::size_t, std::size_t) {});
+  });
   for (CellTask& task : tasks) study.cells.push_back(std::move(task.cell));
   study.bound = bound.result();
   for (CellAnalysis& cell : study.cells) {
@@ -215,7 +211,7 @@ CellAnalysis analyze_cell(const ResultFile& file, const StoredCell& cell, double
   expect_scans(file);
   const RunCriteria criteria = criteria_of(file, level, margin_of(file, within));
   CellTask task(file, cell, runs);
-  const CellRuns all{&task.reader, task.complete, task.cell.particles};
+  const CellRuns all{&task.reader, task.complete};
   task.put(std::move(sums_of(std::span(&all, 1), criteria, parallel).front()));
   return std::move(task.cell);
 }

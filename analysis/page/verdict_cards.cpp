@@ -4,6 +4,7 @@
 #include "analysis/metrics/verdict_table.hpp"
 #include "analysis/output/figure.hpp"
 #include "analysis/output/number_text.hpp"
+#include "analysis/output/prose.hpp"
 #include "analysis/page/html.hpp"
 #include "analysis/page/page.hpp"
 #include "engine/numbers/angle.hpp"
@@ -121,15 +122,6 @@ struct Sparkline {
   }
 };
 
-std::string spark_note(const StudyAnalysis& study) {
-  return "The NEES ratio of each scan, averaged over runs, on a logarithmic axis that is the same "
-         "on all cards. 1 is right; the grey band is where chance leaves a consistent filter in " +
-         level_text(study.level) +
-         " of scans. Above the band the filter is optimistic, below it conservative. What lies "
-         "beyond the top is drawn there. A bar below the curve marks the eighths of the drive, or "
-         "else the scans, in which a deviation is shown.";
-}
-
 std::string spark_html(const StudyAnalysis& study, const CellAnalysis& cell, std::size_t style,
                        int highest) {
   const NeesSeries* series = judged_series(cell);
@@ -140,8 +132,9 @@ std::string spark_html(const StudyAnalysis& study, const CellAnalysis& cell, std
   const ThinnedSeries thinned = thin(study.times, {{"anees", "1", series->average}}, kSparkColumns);
   const Interval bounds = nees_bounds(cell.complete, series->dimension, study.level);
   const std::string bars = line.bars(cell.verdict);
-  return html_explained("NEES ratio from 0 to " + readable(study.times.back()) + " s",
-                        html_paragraphs({spark_note(study)})) +
+  return html_explained(
+             "NEES ratio from 0 to " + readable(study.times.back()) + " s",
+             html_paragraphs({prose("cards", "curve", {{"level", level_text(study.level)}})})) +
          "<svg class=\"spark\" role=\"img\" viewBox=\"0 0 " +
          pixels(kSparkLeft + kSparkWidth + 2.0) + " " +
          pixels(kSparkHeight + (bars.empty() ? 8.0 : 24.0)) +
@@ -149,12 +142,6 @@ std::string spark_html(const StudyAnalysis& study, const CellAnalysis& cell, std
          compact(series->average.back() / dimension) + "\">" + line.band(bounds, dimension) +
          line.grid() + "<path class=\"curve\" stroke=\"" + line_colour(style) + "\" d=\"" +
          line.path(thinned, dimension) + "\"/>" + bars + "</svg>\n";
-}
-
-std::string rmse_note(const StudyAnalysis& study) {
-  return "Root mean square error over the scans of a run, mean over the complete runs. The "
-         "brackets hold the mean of infinitely many runs in " +
-         level_text(study.level) + " of studies.";
 }
 
 /// A number with its name; nothing where it is not known.
@@ -167,34 +154,23 @@ std::string number_html(const std::string& name, const std::string& value,
 }
 
 std::string rmse_html(const StudyAnalysis& study, const std::string& name, const MeanText& value) {
-  std::vector<std::string> notes = {rmse_note(study)};
+  std::vector<std::string> notes = {prose("cards", "rmse", {{"level", level_text(study.level)}})};
   if (!value.median.empty()) {
-    notes.push_back(
-        "A few runs decide this mean, so it has no interval. The median over the same runs is " +
-        value.median + ".");
+    notes.push_back(prose("cards", "heavy tail", {{"median", value.median}}));
   }
   return number_html(name, value.mean, notes);
 }
 
-/// The ratio of this cell as a multiple of a standard deviation.
-std::string deviations_note(const CellAnalysis& cell) {
-  const double ratio = cell.verdict.ratio_estimate();
-  return "Here errors are about " + compact(std::sqrt(ratio)) + " times (the square root of " +
-         compact(ratio) + ") as large as the standard deviations that its covariance claims.";
-}
-
-/// Which covariance of a particle filter is judged (STATISTICS 1, 4).
-std::string particles_note(const CellAnalysis& cell) {
-  return "The covariance of this particle filter is the spread of the poses that its " +
-         std::to_string(cell.particles) +
-         " particles drew at a scan, by their weights before resampling. Since the spread of few "
-         "draws is too small by construction, its NEES is corrected for the number of effective "
-         "draws (ESS). At a scan that drew no poses, each particle's own covariance is part of it.";
-}
-
 std::vector<std::string> ratio_notes(const StudyAnalysis& study, const CellAnalysis& cell) {
-  std::vector<std::string> notes = {deviations_note(cell), ratio_note(study)};
-  if (cell.leading == Moments::corrected) notes.push_back(particles_note(cell));
+  const double ratio = cell.verdict.ratio_estimate();
+  std::vector<std::string> notes = {
+      prose("cards", "deviations",
+            {{"root", compact(std::sqrt(ratio))}, {"ratio", compact(ratio)}}),
+      ratio_note(study)};
+  if (cell.leading == Moments::corrected) {
+    const std::string particles = std::to_string(cell.particles);
+    notes.push_back(prose("cards", "particles", {{"particles", particles}}));
+  }
   std::ranges::copy(cautions({&cell, 1}, study.imported), std::back_inserter(notes));
   return notes;
 }

@@ -34,6 +34,9 @@ class StepContext {
               const StopFlag* stop = nullptr)
       : seed_(seed), run_(run), step_(step), parallel_(&parallel), stop_(stop) {}
 
+  /// The context of a filter before its first step: one thread.
+  static StepContext before_all_steps() { return {0, 0, 0, Parallel::serial()}; }
+
   std::uint64_t run() const { return run_; }
   std::uint32_t step() const { return step_; }
   /// The stream of (study seed, run, step, purpose, index), the same at any time and on any thread.

@@ -29,7 +29,7 @@ class Weights {
   /// A particle with the greatest weight.
   std::size_t heaviest() const { return heaviest_; }
 
-  void make_equal() { make_equal(StepContext(0, 0, 0, Parallel::serial())); }
+  void make_equal() { make_equal(StepContext::before_all_steps()); }
   void make_equal(const StepContext& context) {
     heaviest_ = 0;
     const double share = 1.0 / static_cast<double>(particles_);

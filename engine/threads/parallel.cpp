@@ -10,52 +10,60 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <atomic>
 #include <exception>
+#include <limits>
+#include <mutex>
 
 namespace montecarta::engine {
 namespace {
 
-using Call = void (*)(const void*, std::size_t);
-
-void spread_in_arena(std::size_t count, Call call, const void* body) {
-  tbb::parallel_for(std::size_t{0}, count, [=](std::size_t i) { call(body, i); });
-}
-
-bool inside_a_task() { return tbb::task::current_context() != nullptr; }
-
-/// Keeps the first exception of a body, since no exception may leave an OpenMP region.
-class FirstException {
+/// The bodies of one loop. Of their exceptions it keeps that of the least index: all bodies before
+/// it are called on any number of threads, and those behind it need not be.
+class Bodies {
  public:
-  bool caught() const { return taken_.load(std::memory_order_relaxed); }
-  void catch_current() {
-    if (!taken_.exchange(true)) exception_ = std::current_exception();
+  using Call = void (*)(const void*, std::size_t);
+
+  Bodies(Call function, const void* body) : call_(function), body_(body) {}
+
+  void call(std::size_t i) {
+    if (i > failed_.load(std::memory_order_relaxed)) return;
+    try {
+      call_(body_, i);
+    } catch (...) {
+      const std::lock_guard lock(mutex_);
+      if (i > failed_.load(std::memory_order_relaxed)) return;
+      failed_.store(i, std::memory_order_relaxed);
+      exception_ = std::current_exception();
+    }
   }
+  /// Once all calls have returned.
   void rethrow() const {
     if (exception_) std::rethrow_exception(exception_);
   }
 
  private:
-  std::atomic<bool> taken_{false};
+  Call call_;
+  const void* body_;
+  std::atomic<std::size_t> failed_{std::numeric_limits<std::size_t>::max()};
+  std::mutex mutex_;
   std::exception_ptr exception_;
 };
 
-void spread_openmp(int threads, std::size_t count, Call call, const void* body) {
+void spread_in_arena(std::size_t count, Bodies& bodies) {
+  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) { bodies.call(i); });
+}
+
+bool inside_a_task() { return tbb::task::current_context() != nullptr; }
+
+void spread_openmp(int threads, std::size_t count, Bodies& bodies) {
   // A loop inside the body of another stays on its thread, since nested teams would oversubscribe
   // the machine.
   if (omp_in_parallel() != 0) threads = 1;
   const auto team = static_cast<std::size_t>(threads);
   const std::size_t chunk = std::max<std::size_t>(1, count / (8 * team));
-  FirstException first;
 #pragma omp parallel for schedule(dynamic, chunk) num_threads(threads)
-  for (std::size_t i = 0; i < count; ++i) {
-    if (first.caught()) continue;
-    try {
-      call(body, i);
-    } catch (...) {
-      first.catch_current();
-    }
-  }
-  first.rethrow();
+  for (std::size_t i = 0; i < count; ++i) bodies.call(i);
 }
 
 }  // namespace
@@ -81,12 +89,17 @@ const Parallel& Parallel::serial() {
 
 void Parallel::spread(std::size_t count, void (*call)(const void*, std::size_t),
                       const void* body) const {
-  if (backend_ == Backend::openmp) return spread_openmp(threads_, count, call, body);
-  pool_->arena.execute([=] {
-    if (!inside_a_task()) return spread_in_arena(count, call, body);
-    // While a thread waits for an inner loop, it must not take another body of the outer one.
-    tbb::this_task_arena::isolate([=] { spread_in_arena(count, call, body); });
-  });
+  Bodies bodies(call, body);
+  if (backend_ == Backend::openmp) {
+    spread_openmp(threads_, count, bodies);
+  } else {
+    pool_->arena.execute([&] {
+      if (!inside_a_task()) return spread_in_arena(count, bodies);
+      // While a thread waits for an inner loop, it must not take another body of the outer one.
+      tbb::this_task_arena::isolate([&] { spread_in_arena(count, bodies); });
+    });
+  }
+  bodies.rethrow();
 }
 
 }  // namespace montecarta::engine

@@ -73,8 +73,8 @@ class Parallel {
   Backend backend() const { return backend_; }
   int threads() const { return backend_ == Backend::serial ? 1 : threads_; }
 
-  /// Calls body(i) once for every i in [0, count). The first exception thrown by a body is
-  /// rethrown.
+  /// Calls body(i) once for every i in [0, count). If bodies throw, the exception of the least i is
+  /// rethrown, on any number of threads.
   template <class Body>
   void for_each(std::size_t count, const Body& body) const {
     if (threads() == 1 || count < 2) {

@@ -31,7 +31,7 @@ class FastSlam final : public SlamFilter {
         maps_(settings.particles) {}
 
   void start(const Pose& start) override {
-    now_ = before_all_steps();
+    now_ = StepContext::before_all_steps();
     population_.start();
     maps_.clear();
     association_.start();
@@ -72,7 +72,6 @@ class FastSlam final : public SlamFilter {
   }
 
  private:
-  static StepContext before_all_steps() { return {0, 0, 0, Parallel::serial()}; }
   const Weights<Real>& weights() const { return population_.weights(); }
 
   void predict_poses(const StepContext& context) {
@@ -128,7 +127,8 @@ class FastSlam final : public SlamFilter {
     if constexpr (KeepsGaussians<Proposal>) proposal_.begin_step();
   }
 
-  StepContext now_ = before_all_steps();  ///< context of the present step, with its threads
+  StepContext now_ =
+      StepContext::before_all_steps();  ///< context of the present step, with its threads
   std::size_t components_;
   Proposal proposal_;
   Associating association_;

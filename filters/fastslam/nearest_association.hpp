@@ -23,7 +23,7 @@ class NearestAssociation {
                      const Belief& belief)
       : particles_(particles),
         settings_(settings),
-        seen_by_(belief.sensor),
+        sensor_policy_(belief.sensor),
         noise_(SensorNoise::of(belief)),
         log_new_density_(log_new_density(settings, belief)),
         counts_(blocks_for<Real>(particles), Real(0.0)),
@@ -46,8 +46,8 @@ class NearestAssociation {
     maps.open(context, slots_, opened_);
     pairings_.resize(maps.blocks() * kLanes * seen_.size());
     searches_.resize(pairings_.size());
-    context.parallel_for(maps.blocks(),
-                         [&](std::size_t b) { judge_block(b, seen_by_.sensor(predicted[b])); });
+    context.parallel_for(
+        maps.blocks(), [&](std::size_t b) { judge_block(b, sensor_policy_.sensor(predicted[b])); });
   }
 
   bool matched_nothing() const {
@@ -216,7 +216,7 @@ class NearestAssociation {
 
   std::size_t particles_;
   AssociationSettings settings_;
-  SensorPolicy seen_by_;
+  SensorPolicy sensor_policy_;
   SensorNoise noise_;
   double log_new_density_;
   std::vector<Real> counts_, resampled_counts_;

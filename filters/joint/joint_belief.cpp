@@ -192,12 +192,11 @@ void JointBelief::update_with(std::size_t k, const Detection& detection) {
 }
 
 /// The rotation of the invariant error is about the estimate, since its covariance is transformed
-/// after every detection. With errors relative to the vehicle, only the frame of the map rotates.
+/// after every detection.
 ObservationPoint JointBelief::rotation_point(std::size_t slot) const {
-  if (retraction_ == Retraction::invariant || linearisation_->is_relative() ||
-      !fixes_landmark(sensor_))
+  if (retraction_ == Retraction::invariant || !fixes_landmark(sensor_))
     return {system_.gaussian.pose().mean, system_.gaussian.mean_of(slot)};
-  return {system_.points.pose(), system_.points.landmark(slot)};
+  return linearisation_->rotation_point(system_, slot);
 }
 
 }  // namespace montecarta::filters

@@ -60,6 +60,11 @@ Eigen::Vector2d Linearisation::offset(const LinearisedSystem& /*system*/) const 
   return Eigen::Vector2d::Zero();
 }
 
+ObservationPoint Linearisation::rotation_point(const LinearisedSystem& system,
+                                               std::size_t slot) const {
+  return {system.points.pose(), system.points.landmark(slot)};
+}
+
 PoseMoments Linearisation::pose_after(const LinearisedSystem& system,
                                       const MotionIncrement& motion) const {
   return system.gaussian.pose_after(linearised(system, motion));
@@ -134,7 +139,10 @@ class RelativeToVehicle final : public Linearisation {
     frame_.start(start, gaussian);
   }
   void end_scan(CompressedGaussian& gaussian) override { frame_.centre(gaussian); }
-  bool is_relative() const override { return true; }
+  /// The estimates, since the frame of the map alone rotates.
+  ObservationPoint rotation_point(const LinearisedSystem& system, std::size_t slot) const override {
+    return {system.gaussian.pose().mean, system.gaussian.mean_of(slot)};
+  }
   PoseMoments pose_after(const LinearisedSystem& system,
                          const MotionIncrement& motion) const override {
     return frame_.in_map(Linearisation::pose_after(system, motion));

@@ -67,9 +67,8 @@ class Linearisation {
   virtual Eigen::Vector2d offset(const LinearisedSystem& system) const;
   /// All detections of a scan have been used.
   virtual void end_scan(CompressedGaussian& /*gaussian*/) {}
-  /// Whether errors are relative to the vehicle. The frame of the map alone rotates in such a
-  /// linearised system.
-  virtual bool is_relative() const { return false; }
+  /// The points of vehicle and landmark about which the linearised system can be rotated.
+  virtual ObservationPoint rotation_point(const LinearisedSystem& system, std::size_t slot) const;
 
   /// Predicted moments of the pose after `motion`, in the map.
   virtual PoseMoments pose_after(const LinearisedSystem& system,

@@ -42,7 +42,7 @@ class MarginalFilter final : public SlamFilter {
     association_.clear();
     motion_.restart();
     forget_scan();
-    now_ = before_all_steps();
+    now_ = StepContext::before_all_steps();
   }
 
   void predict(const StepContext& context, const Control& control, double duration) override {
@@ -68,7 +68,6 @@ class MarginalFilter final : public SlamFilter {
   void map(std::span<std::optional<LandmarkEstimate>> landmarks) const override;
 
  private:
-  static StepContext before_all_steps() { return {0, 0, 0, Parallel::serial()}; }
   const Weights<Real>& weights() const { return population_.weights(); }
 
   void learn(const StepContext& context) {
@@ -170,7 +169,8 @@ class MarginalFilter final : public SlamFilter {
     is_drawn_ = false;
   }
 
-  StepContext now_ = before_all_steps();  ///< context of the present step, with its threads
+  StepContext now_ =
+      StepContext::before_all_steps();  ///< context of the present step, with its threads
   MarginalSettings settings_;
   Belief belief_;
   SharedAssociation association_;

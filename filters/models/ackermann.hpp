@@ -63,13 +63,13 @@ BasicPose<Real> move(const BasicPose<Real>& pose, const Control& control, double
 }
 
 /// move() with its derivatives at (pose, control). `heading` is the direction of the pose, and
-/// `bend` belongs to the control, which is the same for all lanes.
+/// `turning_angle` belongs to the control, which is the same for all lanes.
 template <class Real, class V>
 [[gnu::always_inline]] inline LinearisedMove<Real> linearised_move(
     const BasicPose<Real>& pose, const Direction<Real>& heading, const Control& control,
-    const TurningAngle<double>& bend, double duration, const V& vehicle) {
+    const TurningAngle<double>& turning_angle, double duration, const V& vehicle) {
   const DifferentiatedStep<kControlsOf<V>> body =
-      differentiated_step(vehicle, control, bend, duration);
+      differentiated_step(vehicle, control, turning_angle, duration);
   const BasicPoint<Real> way = in_world(heading, Real(body.step.forward), Real(body.step.left));
   using Column = typename MotionJacobians<Real>::Column;
   // This is not a loop, since g++ 12 fuses the products of in_world() if it vectorises one.

@@ -128,8 +128,8 @@ inline Control twist_of(Integration integration, const BodyStep<double>& step, d
 }
 
 /// The yaw rate [rad/s] that turns by `off` [rad] in one control step, limited to `limit`.
-inline double yaw_rate_towards(const PilotInput& aim, double off, double limit) {
-  return std::clamp(off * aim.control_rate, -limit, limit);
+inline double yaw_rate_towards(const PilotInput& input, double off, double limit) {
+  return std::clamp(off * input.control_rate, -limit, limit);
 }
 
 /// The setting that limits the yaw rate of the pilot.

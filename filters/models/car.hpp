@@ -15,8 +15,8 @@ namespace montecarta::models {
 inline constexpr double kLeastWheelShare = 0.1;
 
 /// A car that is steered at the front wheels. Its control is (speed [m/s], steering angle [rad]); a
-/// step is linear in the speed and bends with the steering angle. `Kind` defines the reference
-/// point of the pose and of the speed.
+/// step is linear in the speed and turning_angles with the steering angle. `Kind` defines the
+/// reference point of the pose and of the speed.
 struct Car {
   enum class Kind {
     front_axle,  ///< pose and speed of the middle of the front axle (EQUATIONS 1)
@@ -89,11 +89,11 @@ struct Car {
   }
 
   /// Turns the steering towards the way-point, limited in rate and angle (EQUATIONS (1.7)).
-  Control steered(const PilotInput& aim) const {
-    const double steer = aim.before[1];
-    const double most = steer_rate_limit / aim.control_rate;
-    const double change = std::clamp(wrap(aim.off - steer), -most, most);
-    return {aim.speed, std::clamp(steer + change, -steer_limit, steer_limit)};
+  Control steered(const PilotInput& input) const {
+    const double steer = input.before[1];
+    const double most = steer_rate_limit / input.control_rate;
+    const double change = std::clamp(wrap(input.off - steer), -most, most);
+    return {input.speed, std::clamp(steer + change, -steer_limit, steer_limit)};
   }
   /// Longest distance [m] needed to reach any heading: a full circle, and the way to full lock.
   double way_to_turn(double speed) const {

@@ -38,10 +38,10 @@ struct DifferentialDrive {
     return {twist[0], twist[2]};
   }
 
-  Control steered(const PilotInput& aim) const {
-    const double off = wrap(aim.off);
-    const double speed = std::abs(off) > turn_on_spot ? 0.0 : aim.speed;
-    return {speed, yaw_rate_towards(aim, off, yaw_rate_limit)};
+  Control steered(const PilotInput& input) const {
+    const double off = wrap(input.off);
+    const double speed = std::abs(off) > turn_on_spot ? 0.0 : input.speed;
+    return {speed, yaw_rate_towards(input, off, yaw_rate_limit)};
   }
   /// Distance [m] driven at `speed` [m/s] in the time of a full turn.
   double way_to_turn(double speed) const { return speed * kTwoPi / yaw_rate_limit; }

@@ -38,10 +38,10 @@ struct Omnidirectional {
   }
 
   /// Drives straight to the way-point while it turns towards it.
-  Control steered(const PilotInput& aim) const {
-    const double off = wrap(aim.off);
-    return {aim.speed * std::cos(off), aim.speed * std::sin(off),
-            yaw_rate_towards(aim, off, yaw_rate_limit)};
+  Control steered(const PilotInput& input) const {
+    const double off = wrap(input.off);
+    return {input.speed * std::cos(off), input.speed * std::sin(off),
+            yaw_rate_towards(input, off, yaw_rate_limit)};
   }
   /// Distance [m] driven at `speed` [m/s] in the time of a full turn.
   double way_to_turn(double speed) const { return speed * kTwoPi / yaw_rate_limit; }

@@ -19,7 +19,8 @@ namespace montecarta::models {
 /// own and list it here. The members of a vehicle with n controls are
 /// - kNames, name(), named(): its names in study files; kControls: its n controls; numbers(): its
 ///   other settings; `integration`: only if the user may choose it;
-/// - travel(): its displacement at a given bend, linear in the first n - 1 controls. The bend is an
+/// - travel(): its displacement at a given turning_angle, linear in the first n - 1 controls. The
+/// turning_angle is an
 ///   angle: the last control times angle_scale(). If kTurnsByAngle, the vehicle turns by that angle
 ///   and the turn of travel() is 0;
 /// - travel_by_angle(): the derivative of travel(); control_of(): the control of a step;
@@ -65,15 +66,15 @@ double bend_angle(const V& vehicle, const Control& control, double duration) {
 }
 
 /// One control step of `duration` [s] in the frame of the vehicle (EQUATIONS 1), for one vehicle
-/// (double) or one per lane; `bend` belongs to the control.
+/// (double) or one per lane; `turning_angle` belongs to the control.
 template <class V, class Real>
 BodyStep<Real> body_step_at(const V& vehicle, const ControlOf<Real>& control,
-                            const TurningAngle<Real>& bend, double duration) {
-  BodyStep<Real> step = vehicle.travel(first_of<kLinearOf<V>>(control), bend, duration);
-  if constexpr (V::kTurnsByAngle) step.turn = bend.angle;
+                            const TurningAngle<Real>& turning_angle, double duration) {
+  BodyStep<Real> step = vehicle.travel(first_of<kLinearOf<V>>(control), turning_angle, duration);
+  if constexpr (V::kTurnsByAngle) step.turn = turning_angle.angle;
   return step;
 }
-/// The same with the bend computed from the control.
+/// The same with the turning_angle computed from the control.
 template <class V, class Real>
 BodyStep<Real> body_step_of(const V& vehicle, const ControlOf<Real>& control, double duration) {
   const Real angle = control[kLinearOf<V>] * Real(vehicle.angle_scale(duration));
@@ -97,24 +98,25 @@ struct DifferentiatedStep {
 /// travel() with component i equal to `size` and all others 0, the share of that component.
 template <class V>
 BodyStep<double> unit_travel(const V& vehicle, std::size_t i, double size,
-                             const TurningAngle<double>& bend, double duration) {
+                             const TurningAngle<double>& turning_angle, double duration) {
   std::array<double, kLinearOf<V>> linear{};
   linear[i] = size;
-  return vehicle.travel(linear, bend, duration);
+  return vehicle.travel(linear, turning_angle, duration);
 }
 
-/// body_step_at() with its derivatives; `bend` belongs to the control.
+/// body_step_at() with its derivatives; `turning_angle` belongs to the control.
 template <class V>
 [[gnu::always_inline]] inline DifferentiatedStep<kControlsOf<V>> differentiated_step(
-    const V& vehicle, const Control& control, const TurningAngle<double>& bend, double duration) {
+    const V& vehicle, const Control& control, const TurningAngle<double>& turning_angle,
+    double duration) {
   constexpr std::size_t kLinear = kLinearOf<V>;
   DifferentiatedStep<kControlsOf<V>> result{
-      .step = body_step_at(vehicle, control.values, bend, duration), .by_control = {}};
+      .step = body_step_at(vehicle, control.values, turning_angle, duration), .by_control = {}};
   for (std::size_t i = 0; i < kLinear; ++i) {
-    result.by_control[i] = unit_travel(vehicle, i, 1.0, bend, duration);
+    result.by_control[i] = unit_travel(vehicle, i, 1.0, turning_angle, duration);
   }
   BodyStep<double>& last = result.by_control[kLinear];
-  last = vehicle.travel_by_angle(first_of<kLinear>(control.values), bend, duration);
+  last = vehicle.travel_by_angle(first_of<kLinear>(control.values), turning_angle, duration);
   if constexpr (V::kTurnsByAngle) {
     const double scale = vehicle.angle_scale(duration);
     last = {last.forward * scale, last.left * scale, scale};
@@ -123,8 +125,8 @@ template <class V>
 }
 
 /// The control that turns a simulated vehicle to a way-point.
-inline Control steered(const Vehicle& vehicle, const PilotInput& aim) {
-  return std::visit([&](const auto& one) { return one.steered(aim); }, vehicle);
+inline Control steered(const Vehicle& vehicle, const PilotInput& input) {
+  return std::visit([&](const auto& one) { return one.steered(input); }, vehicle);
 }
 
 /// Longest distance [m] driven at `speed` [m/s] until steered() has reached any given heading.

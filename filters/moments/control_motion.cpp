@@ -24,12 +24,13 @@ Column3<double> turned(const Column3<double>& step, const Direction<double>& cou
 /// the square root times the spread.
 PointPair heading_pair(const Column3<double>& step, const Column3<double>& column,
                        const Direction<double>& turn) {
-  const double bend = turn.cosine - 1.0;
+  const double turning_angle = turn.cosine - 1.0;
   return {{column.x - turn.sine * step.y, column.y + turn.sine * step.x, column.h},
-          {bend * step.x, bend * step.y, 0.0}};
+          {turning_angle * step.x, turning_angle * step.y, 0.0}};
 }
 
-/// Points that differ in the angle of the bend; their images are combined before they are rotated.
+/// Points that differ in the angle of the turning_angle; their images are combined before they are
+/// rotated.
 PointPair bend_pair(const Column3<double>& centre, const Column3<double>& leftward,
                     const Column3<double>& rightward, const Direction<double>& course) {
   return {turned(0.5 * (leftward - rightward), course),
@@ -43,7 +44,7 @@ Column3<double> heading_column(const Symmetric3<double>& P) {
   return {P.xh * inverse, P.yh * inverse, root};
 }
 
-/// The bend at the sum of two angles.
+/// The turning_angle at the sum of two angles.
 TurningAngle<double> at_sum(const TurningAngle<double>& a, const TurningAngle<double>& b) {
   const auto& [c, s] = a.direction;
   const auto& [d, t] = b.direction;
@@ -67,16 +68,16 @@ template <class V>
   const double angle = control[kLinear] * scale, spread = rule.spread * (sigma[kLinear] * scale);
   const auto [course, turn, ahead, aside] =
       directions_of<4>({from.heading, rule.spread * column.h, angle, spread});
-  const TurningAngle<double> bend{angle, ahead};
+  const TurningAngle<double> turning_angle{angle, ahead};
   const auto image = [&](const TurningAngle<double>& at) {
     return column_of(body_step_at(vehicle, control.values, at, duration));
   };
-  const Column3<double> centre = image(bend);
+  const Column3<double> centre = image(turning_angle);
   const Column3<double> step = turned(centre, course);
   Symmetric3<double> P = before.covariance();
   add_outer(P, -1.0, column);
   const auto add_linear = [&, course = course](std::size_t i) {  // linear, so no points are needed
-    const auto travel = unit_travel(vehicle, i, sigma[i], bend, duration);
+    const auto travel = unit_travel(vehicle, i, sigma[i], turning_angle, duration);
     add_outer(P, 1.0, turned(column_of(travel), course));
   };
   add_linear(0);  // not a loop: g++ 12 fuses the products of in_world() if it vectorises one
@@ -88,8 +89,8 @@ template <class V>
   };
   const Column3<double> a = add(heading_pair(step, rule.spread * column, turn));
   const Column3<double> b =
-      add(bend_pair(centre, image(at_sum(bend, {spread, aside})),
-                    image(at_sum(bend, {-spread, {aside.cosine, -aside.sine}})), course));
+      add(bend_pair(centre, image(at_sum(turning_angle, {spread, aside})),
+                    image(at_sum(turning_angle, {-spread, {aside.cosine, -aside.sine}})), course));
   const Column3<double> e = rule.mean_weight * (a + b);
   add_outer(P, rule.shift, e);
   return {{from.x + step.x + e.x, from.y + step.y + e.y, wrap(from.heading + step.h + e.h)}, P};
@@ -126,7 +127,7 @@ void add_cross(Symmetric3<double>& P, double weight, const Column3<double>& a,
 }
 
 /// A summand of the displacement: a coefficient of known mean and variance times a column that
-/// depends only on the bend.
+/// depends only on the turning_angle.
 template <std::size_t N>
 struct BodyPart {
   double mean, variance;
@@ -166,29 +167,30 @@ BodyMoments moments_of(const std::array<BodyPart<N>, Parts>& parts, const Contro
 }
 
 /// Moments of the displacement of a vehicle of type V. It has one part for each control in which it
-/// is linear, per unit of that control, and one for the turn by the bend, relative to that of the
-/// central node. `bends` are those of the nodes.
+/// is linear, per unit of that control, and one for the turn by the turning_angle, relative to that
+/// of the central node. `turning_angles` are those of the nodes.
 template <class V, std::size_t N>
-BodyMoments body_moments(const V& vehicle, const std::array<TurningAngle<double>, N>& bends,
+BodyMoments body_moments(const V& vehicle,
+                         const std::array<TurningAngle<double>, N>& turning_angles,
                          const Control& control, double duration, const ControlOf<double>& sigma,
                          const ControlRule<N>& rule) {
   constexpr std::size_t kLinear = kLinearOf<V>;
   std::array<BodyPart<N>, kLinear + (V::kTurnsByAngle ? 1 : 0)> parts;
   for (std::size_t i = 0; i < kLinear; ++i) {
     parts[i] = {.mean = control[i], .variance = sigma[i] * sigma[i], .at_node = {}};
-    for (std::size_t k = 0; k < bends.size(); ++k) {
-      const auto [forward, left, turn] = unit_travel(vehicle, i, 1.0, bends[k], duration);
+    for (std::size_t k = 0; k < turning_angles.size(); ++k) {
+      const auto [forward, left, turn] = unit_travel(vehicle, i, 1.0, turning_angles[k], duration);
       parts[i].at_node[k] = {forward, left, turn};
     }
   }
   if constexpr (V::kTurnsByAngle) {
     parts.back() = {.mean = 1.0, .variance = 0.0, .at_node = {}};
-    for (std::size_t k = 0; k < bends.size(); ++k) {
-      parts.back().at_node[k] = {0.0, 0.0, bends[k].angle - bends[0].angle};
+    for (std::size_t k = 0; k < turning_angles.size(); ++k) {
+      parts.back().at_node[k] = {0.0, 0.0, turning_angles[k].angle - turning_angles[0].angle};
     }
   }
   BodyMoments moments = moments_of(parts, rule);
-  if constexpr (V::kTurnsByAngle) moments.mean.h += bends[0].angle;
+  if constexpr (V::kTurnsByAngle) moments.mean.h += turning_angles[0].angle;
   return moments;
 }
 
@@ -215,10 +217,10 @@ MotionIncrement moved_by_rule(const V& vehicle, const MotionIncrement& before,
   }
   angles[N] = from.heading;
   const auto directions = directions_of<N + 1>(angles);
-  std::array<TurningAngle<double>, N> bends;
-  for (std::size_t k = 0; k < N; ++k) bends[k] = {angles[k], directions[k]};
+  std::array<TurningAngle<double>, N> turning_angles;
+  for (std::size_t k = 0; k < N; ++k) turning_angles[k] = {angles[k], directions[k]};
   const Direction<double>& course = directions.back();
-  const auto [way, moments] = body_moments(vehicle, bends, control, duration, sigma, rule);
+  const auto [way, moments] = body_moments(vehicle, turning_angles, control, duration, sigma, rule);
   const auto noise = rule.sign < 0.0 ? nearest_covariance(moments) : moments;
   const Point moved = in_world(course, way.x, way.y);
   return {{from.x + moved.x, from.y + moved.y, wrap(from.heading + way.h)},

@@ -47,9 +47,9 @@ class MotionIncrement {
   void advance(const V& vehicle, const Control& control, double duration,
                const std::array<double, Control::kMost>& sigma) {
     const double angle = bend_angle(vehicle, control, duration);
-    const auto [heading, bend] = directions_of<2>({pose_.heading, angle});
+    const auto [heading, turning_angle] = directions_of<2>({pose_.heading, angle});
     const auto [pose, F] =
-        linearised_move(pose_, heading, control, {angle, bend}, duration, vehicle);
+        linearised_move(pose_, heading, control, {angle, turning_angle}, duration, vehicle);
     covariance_ = sheared(covariance_, F.x_heading, F.y_heading);
     for (std::size_t i = 0; i < kControlsOf<V>; ++i) {
       const auto& [x, y, turn] = F.by_control[i];

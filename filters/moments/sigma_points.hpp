@@ -168,9 +168,9 @@ struct LandmarkObservation {
     rest = P.along - column.along * column.along;
     const auto [odd, even] = observation_pair(s.predicted.range, rule.spread * column.along,
                                               rule.spread * column.across);
-    const double per_spread = rule.antisymmetric * rule.spread, bend = bend_weight(rule);
+    const double per_spread = rule.antisymmetric * rule.spread, turning_angle = bend_weight(rule);
     slope = {per_spread * odd.range, per_spread * odd.bearing};
-    N = outer(bend, even);
+    N = outer(turning_angle, even);
     N.xx += noise.range, N.yy += noise.bearing;
     innovation = {
         residual(seen, s, {rule.mean_weight * even.range, rule.mean_weight * even.bearing}),

@@ -19,19 +19,6 @@
 namespace montecarta::analysis {
 namespace {
 
-/// All that can be stored, and all that is judged.
-void store_everything(StudyPlan& plan) {
-  plan.columns = {.covariance = true,
-                  .ancestry = true,
-                  .particles = true,
-                  .association = true,
-                  .map = true,
-                  .final_map = true,
-                  .joint = true};
-  plan.scenario = {{"kind", "scripted"}, {"noise", "matched"}, {"association.kind", "known"}};
-  for (Cell& cell : plan.cells) cell.reports.joint = true;
-}
-
 class ResultFuzz : public testing::Test {
  protected:
   ResultFuzz() {

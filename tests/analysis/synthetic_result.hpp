@@ -94,4 +94,17 @@ inline void write_synthetic_result(
   writer.finish();
 }
 
+/// Makes a study store every column, so that every test of the analysis applies.
+inline void store_everything(StudyPlan& plan) {
+  plan.columns = {.covariance = true,
+                  .ancestry = true,
+                  .particles = true,
+                  .association = true,
+                  .map = true,
+                  .final_map = true,
+                  .joint = true};
+  plan.scenario = {{"kind", "scripted"}, {"noise", "matched"}, {"association.kind", "known"}};
+  for (Cell& cell : plan.cells) cell.reports.joint = true;
+}
+
 }  // namespace montecarta::analysis

@@ -65,19 +65,9 @@ std::string tables_of(const StudyAnalysis& study) {
   return tables.str();
 }
 
-/// All that can be stored, and all that is judged.
+/// A result with every column.
 void write_simulated(const std::filesystem::path& path) {
-  write_synthetic_result(path, kRuns, 48, {}, [](StudyPlan& plan) {
-    plan.columns = {.covariance = true,
-                    .ancestry = true,
-                    .particles = true,
-                    .association = true,
-                    .map = true,
-                    .final_map = true,
-                    .joint = true};
-    plan.scenario = {{"kind", "scripted"}, {"noise", "matched"}, {"association.kind", "known"}};
-    for (Cell& cell : plan.cells) cell.reports.joint = true;
-  });
+  write_synthetic_result(path, kRuns, 48, {}, store_everything);
 }
 
 class BlocksOfRuns : public testing::TestWithParam<const char*> {

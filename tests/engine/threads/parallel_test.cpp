@@ -85,6 +85,20 @@ TEST_P(EveryParallel, RethrowsWhatABodyThrewInAnInnerLoopToo) {
               testing::ThrowsMessage<std::runtime_error>("inner"));
 }
 
+TEST_P(EveryParallel, RethrowsTheExceptionOfTheLeastIndex) {
+  std::atomic<bool> has_thrown = false;
+  const auto throws_from_3_on = [&](std::size_t i) {
+    if (i < 3) return;
+    // The body that counts is late, if another thread is there to be earlier.
+    const int patience = parallel.threads() > 1 ? 100'000 : 0;
+    for (int k = 0; i == 3 && !has_thrown && k < patience; ++k) std::this_thread::yield();
+    has_thrown = i > 3;
+    throw std::runtime_error("body " + std::to_string(i));
+  };
+  EXPECT_THAT([&] { parallel.for_each(100, throws_from_3_on); },
+              testing::ThrowsMessage<std::runtime_error>("body 3"));
+}
+
 std::string name_of(const testing::TestParamInfo<Choice>& choice) {
   const char* backends[] = {"tbb", "openmp", "serial"};
   return backends[static_cast<int>(choice.param.backend)] + std::to_string(choice.param.threads);

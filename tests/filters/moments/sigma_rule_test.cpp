@@ -16,13 +16,14 @@ using plain::Vector;
 template <int N>
 struct Bent {
   Eigen::Matrix<double, 3, N> slope;
-  Eigen::Matrix<double, 3, N> bend;
+  Eigen::Matrix<double, 3, N> turning_angle;
   explicit Bent(RngStream& draw) {
     for (double& value : slope.reshaped()) value = draw.normal();
-    for (double& value : bend.reshaped()) value = draw.normal();
+    for (double& value : turning_angle.reshaped()) value = draw.normal();
   }
   Vector<3> operator()(const Vector<N>& x) const {
-    return slope * x + bend * x.cwiseProduct(x) + (bend * x).array().sin().matrix();
+    return slope * x + turning_angle * x.cwiseProduct(x) +
+           (turning_angle * x).array().sin().matrix();
   }
 };
 

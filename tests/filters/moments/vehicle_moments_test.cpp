@@ -79,7 +79,8 @@ TEST_P(EveryVehicleMoments, SigmaPointsAreThoseSentThroughTheVehicle) {
 }
 
 TEST_P(EveryVehicleMoments, QuadratureIsThatOfAllControls) {
-  // Three nodes in each control: exact where the step is linear in it, the same where it bends.
+  // Three nodes in each control: exact where the step is linear in it, the same where it
+  // turning_angles.
   const std::array<double, 3> nodes{0.0, std::sqrt(3.0), -std::sqrt(3.0)};
   const std::array<double, 3> weights{2.0 / 3.0, 1.0 / 6.0, 1.0 / 6.0};
   RngStream draw({.seed = 72, .purpose = Draw::test});
