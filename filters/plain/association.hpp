@@ -40,18 +40,18 @@ template <class Predict>
 Pairing nearest(const Detection& detection, std::size_t landmarks,
                 const AssociationSettings& settings, const Predict& predict) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  double least_D2 = kInfinity;
+  double least_distance = kInfinity;
   Pairing best{.cost = kInfinity};
   for (std::uint32_t j = 0; j < landmarks; ++j) {
     const std::optional<PredictedInnovation> v = predict(j, detection);
     if (!v) continue;
     const double D2 = squared_distance(v->nu, v->S);
     const double ND = D2 + std::log(v->S.determinant());
-    least_D2 = std::min(least_D2, D2);
+    least_distance = std::min(least_distance, D2);
     if (D2 < settings.gate && ND < best.cost) best = {PairingKind::matched, j, ND};
   }
   if (best.kind == PairingKind::matched) return best;
-  return {.kind = least_D2 > settings.new_gate ? PairingKind::fresh : PairingKind::ignored};
+  return {.kind = least_distance > settings.new_gate ? PairingKind::fresh : PairingKind::ignored};
 }
 
 /// If several detections have matched landmark j, only the one of least cost keeps it.
@@ -92,7 +92,7 @@ inline std::vector<Pairing> pair(Scan scan, const Map& map, const Vector<3>& x, 
   const auto predict = [&](std::uint32_t j, const Detection& z) {
     std::optional<PredictedInnovation> predicted;
     if (const auto v = innovation_at(x, map[j], z, observation_noise(setup.belief)))
-      predicted = {v->nu, v->Hx * P * v->Hx.transpose() + v->S_f};
+      predicted = {v->nu, v->Hx * P * v->Hx.transpose() + v->Sf};
     return predicted;
   };
   return pair_nearest(scan, map.size(), setup.association, predict);

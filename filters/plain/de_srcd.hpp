@@ -125,10 +125,10 @@ class DeSrcd final : public Srcd {
 
   /// EQUATIONS (10.2): log p(pose) p(scan given pose), with an uncertain map.
   double log_posterior(const Vector<3>& pose, Particle& p, const Vector<3>& predicted,
-                       const Matrix<3>& P_predicted, Scan scan) const {
-    double sum = log_density(pose, predicted, P_predicted);
+                       const Matrix<3>& P, Scan scan) const {
+    double sum = log_density(pose, predicted, P);
     for_each_match(p, scan, [&](const Landmark& landmark, const Detection& z) {
-      sum += FastSlam::log_likelihood(pose, landmark, z).value_or(0.0);
+      sum += linearised_log_likelihood(pose, landmark, z).value_or(0.0);
     });
     return sum;
   }

@@ -71,10 +71,10 @@ class EkfSlam final : public SlamFilter {
   const Eigen::MatrixXd& covariance() const { return P_; }
 
  private:
-  /// An innovation with all that the update needs: nu, S and P H'.
+  /// An innovation with all that the update needs.
   struct Innovation {
     PredictedInnovation value;
-    Eigen::Matrix<double, Eigen::Dynamic, 2> PHt;
+    Eigen::Matrix<double, Eigen::Dynamic, 2> cross;  ///< P H'
   };
 
   Pose pose() const { return as_pose(mean_.head<3>()); }
@@ -95,16 +95,17 @@ class EkfSlam final : public SlamFilter {
     const Landmark known{.mean = mean_.segment<2>(row), .covariance = P_.block<2, 2>(row, row)};
     const auto v = innovation_at(mean_.head<3>(), known, z, R_);
     if (!v) return std::nullopt;
-    const Eigen::Matrix<double, Eigen::Dynamic, 2> PHt =
+    const Eigen::Matrix<double, Eigen::Dynamic, 2> cross =
         P_.leftCols<3>() * v->Hx.transpose() + P_.middleCols<2>(row) * v->Hf.transpose();
-    const Matrix<2> S = v->Hx * PHt.topRows<3>() + v->Hf * PHt.middleRows<2>(row) + R_;
-    return Innovation{{v->nu, S}, PHt};
+    const Matrix<2> S = v->Hx * cross.topRows<3>() + v->Hf * cross.middleRows<2>(row) + R_;
+    return Innovation{{v->nu, S}, cross};
   }
 
   /// m <- m + K nu, P <- P - K S K' (EQUATIONS (15.1)).
   void condition(const Innovation& v) {
     const auto& [nu, S] = v.value;
-    const Eigen::Matrix<double, Eigen::Dynamic, 2> K = S.llt().solve(v.PHt.transpose()).transpose();
+    const Eigen::Matrix<double, Eigen::Dynamic, 2> K =
+        S.llt().solve(v.cross.transpose()).transpose();
     mean_ += K * nu;
     mean_(2) = wrap(mean_(2));
     P_ -= K * S * K.transpose();

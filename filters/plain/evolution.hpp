@@ -63,12 +63,12 @@ class Evolution {
   /// EQUATIONS (9.2).
   void select(std::size_t i, const Member& trial, std::vector<Member>& population,
               std::vector<double>& J, const Fitness& fitness) {
-    const double J_trial = fitness(i, trial), difference = J_trial - J[i];
+    const double fitness_of_trial = fitness(i, trial), difference = fitness_of_trial - J[i];
     ++decisions;
     if ((trial - population[i]).norm() >= 1e-9 && difference != 0.0)
       closest_call = std::min(closest_call, std::abs(difference));
-    if (J_trial < J[i]) return;
-    population[i] = trial, J[i] = J_trial;
+    if (fitness_of_trial < J[i]) return;
+    population[i] = trial, J[i] = fitness_of_trial;
     ++accepted;
   }
 
@@ -80,8 +80,8 @@ class Evolution {
     for (std::size_t k = 0; k < population.size(); ++k) {
       if (k != i) others.push_back(k);
     }
-    const Member plus = population[taken(others, first)];
-    const Member minus = population[taken(others, first)];
+    const Member& plus = population[taken(others, first)];
+    const Member& minus = population[taken(others, first)];
     const Member other = others.empty() ? leader : population[taken(others, second)];
     const Member& base = settings.base == EvolutionBase::best     ? leader
                          : settings.base == EvolutionBase::random ? other

@@ -100,8 +100,12 @@ class FastSlam : public SlamFilter {
   /// log p(z | pose, landmark); nullopt if the landmark is too near.
   virtual std::optional<double> log_likelihood(const Vector<3>& pose, const Landmark& landmark,
                                                const Detection& z) const {
+    return linearised_log_likelihood(pose, landmark, z);
+  }
+  std::optional<double> linearised_log_likelihood(const Vector<3>& pose, const Landmark& landmark,
+                                                  const Detection& z) const {
     const auto v = innovation_at(pose, landmark, z, R_);
-    return v ? std::optional(log_gaussian<2>(v->nu, v->S_f)) : std::nullopt;
+    return v ? std::optional(log_gaussian<2>(v->nu, v->Sf)) : std::nullopt;
   }
 
   /// Calls visit(landmark, detection) for each match of a particle, in the order of the scan.

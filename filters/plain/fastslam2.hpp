@@ -44,7 +44,7 @@ class FastSlam2 : public FastSlam {
                                             const Detection& z) const {
     const auto v = innovation_at(p.pose, landmark, z, R_);
     if (!v) return std::nullopt;
-    const Matrix<2> S = v->Hx * p.covariance * v->Hx.transpose() + v->S_f;
+    const Matrix<2> S = v->Hx * p.covariance * v->Hx.transpose() + v->Sf;
     const Matrix<3, 2> K = gain<3, 2>(p.covariance * v->Hx.transpose(), S);
     p.pose += K * v->nu;
     p.pose(2) = wrap(p.pose(2));
@@ -112,7 +112,7 @@ class FastSlam2 : public FastSlam {
       if (!v) return;
       H.middleRows<2>(rows) = v->Hx;
       nu.segment<2>(rows) = v->nu;
-      S.block<2, 2>(rows, rows) = v->S_f;
+      S.block<2, 2>(rows, rows) = v->Sf;
       rows += 2;
     });
     const Eigen::MatrixXd Hx = H.topRows(rows);

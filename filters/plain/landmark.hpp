@@ -57,10 +57,10 @@ inline bool is_far_enough(const Vector<3>& pose, const Vector<2>& landmark) {
 
 /// The innovation of a landmark that is observed from a pose, with its derivatives (EQUATIONS 2).
 struct LinearisedInnovation {
-  Vector<2> nu;   ///< z - h(x, mu)
-  Matrix23 Hx;    ///< of h by the pose
-  Matrix<2> Hf;   ///< of h by the landmark
-  Matrix<2> S_f;  ///< Hf Sigma Hf' + R, the covariance of nu if the pose is known
+  Vector<2> nu;  ///< z - h(x, mu)
+  Matrix23 Hx;   ///< of h by the pose
+  Matrix<2> Hf;  ///< of h by the landmark
+  Matrix<2> Sf;  ///< Hf Sigma Hf' + R, the covariance of nu if the pose is known
 };
 
 /// nullopt if the landmark is too near.
@@ -76,11 +76,11 @@ inline std::optional<LinearisedInnovation> innovation_at(const Vector<3>& pose,
 
 /// Updates a landmark that is observed again from a known pose (EQUATIONS (4.3)).
 inline void update_landmark(Landmark& landmark, const LinearisedInnovation& v, const Matrix<2>& R) {
-  const Matrix<2> K = gain<2, 2>(landmark.covariance * v.Hf.transpose(), v.S_f);
-  const Matrix<2> I_KH = Matrix<2>::Identity() - K * v.Hf;
+  const Matrix<2> K = gain<2, 2>(landmark.covariance * v.Hf.transpose(), v.Sf);
+  const Matrix<2> kept = Matrix<2>::Identity() - K * v.Hf;
   landmark.mean += K * v.nu;
   landmark.covariance =
-      (I_KH * landmark.covariance * I_KH.transpose() + K * R * K.transpose()).eval();
+      (kept * landmark.covariance * kept.transpose() + K * R * K.transpose()).eval();
 }
 
 /// Initialises a landmark that is observed from a known pose (EQUATIONS (4.4)).

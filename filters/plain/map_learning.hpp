@@ -42,7 +42,7 @@ class MapLearning {
   void learn(const StreamIdentity& chance, double heading, const WeightedPoses& cloud,
              const Detection& z, Landmark& landmark) {
     Known known{landmark.mean, Matrix<2>::Zero()};
-    if (settings_.mode == MapMode::recursive) known.Lambda = inverse_of(landmark.covariance);
+    if (settings_.mode == MapMode::recursive) known.information = inverse_of(landmark.covariance);
     if (settings_.mode == MapMode::onestep_threshold &&
         objective(landmark.mean, cloud, z) <= settings_.threshold) {
       ++left_alone_;
@@ -51,7 +51,7 @@ class MapLearning {
     landmark.mean = settings_.solver == MapSolver::de ? evolved(chance, heading, cloud, z, known)
                                                       : descended(cloud, z, known);
     const Normal normal = normal_equations(landmark.mean, cloud, z, cloud.weight);
-    if (normal.A(0, 0) > 0.0) landmark.covariance = inverse_of(known.Lambda + normal.A);
+    if (normal.A(0, 0) > 0.0) landmark.covariance = inverse_of(known.information + normal.A);
   }
 
   const Evolution<2>& evolution() const { return evolution_; }
@@ -62,9 +62,9 @@ class MapLearning {
   /// The landmark before the detection: theta and Lambda.
   struct Known {
     Vector<2> mean;
-    Matrix<2> Lambda;
+    Matrix<2> information;
     double squared_distance(const Vector<2>& place) const {
-      return (place - mean).dot(Lambda * (place - mean));
+      return (place - mean).dot(information * (place - mean));
     }
   };
   /// Sums over the poses: A = Hf' R^-1 Hf, g = Hf' R^-1 nu.
@@ -117,9 +117,9 @@ class MapLearning {
     for (std::size_t i = 0; i < share.size(); ++i) {
       const auto v = innovation_at(cloud.pose[i], at, z, R_);
       if (!v) continue;
-      const Matrix<2> HtR = gain<2, 2>(v->Hf.transpose(), R_);
-      sum.A += share[i] * HtR * v->Hf;
-      sum.g += share[i] * HtR * v->nu;
+      const Matrix<2> gradient = gain<2, 2>(v->Hf.transpose(), R_);
+      sum.A += share[i] * gradient * v->Hf;
+      sum.g += share[i] * gradient * v->nu;
     }
     return sum;
   }
@@ -142,7 +142,7 @@ class MapLearning {
       }
       const auto [A, g] = normal_equations(place, cloud, z, share);
       const Vector<2> step =
-          (known.Lambda + A).llt().solve(g - known.Lambda * (place - known.mean));
+          (known.information + A).llt().solve(g - known.information * (place - known.mean));
       const bool falls = J(place + step) < J(place);
       if (!falls && !(step.norm() < 1e-6)) break;
       place += step;

@@ -159,10 +159,10 @@ class Marginal final : public SlamFilter {
     for_each_match([&](const Landmark& landmark, std::size_t k) {
       const auto v = innovation_at(x, landmark, scan[k], R_);
       if (!v) return;
-      const Matrix<2> S = v->Hx * P * v->Hx.transpose() + v->S_f;
+      const Matrix<2> S = v->Hx * P * v->Hx.transpose() + v->Sf;
       sums[k].nu += weight * v->nu;
       sums[k].S += weight * (S + v->nu * v->nu.transpose());
-      log_explained += log_gaussian<2>(v->nu, is_posterior_ ? S : v->S_f);
+      log_explained += log_gaussian<2>(v->nu, is_posterior_ ? S : v->Sf);
       if (!is_posterior_) return;
       const Matrix<3, 2> K = gain<3, 2>(P * v->Hx.transpose(), S);
       x += K * v->nu;
@@ -176,7 +176,7 @@ class Marginal final : public SlamFilter {
     double sum = 0.0;
     for_each_match([&](const Landmark& landmark, std::size_t k) {
       const auto v = innovation_at(pose, landmark, scan[k], R_);
-      if (v) sum += log_gaussian<2>(v->nu, v->S_f);
+      if (v) sum += log_gaussian<2>(v->nu, v->Sf);
       if (!v) ++report_.numerical_faults;
     });
     return sum;

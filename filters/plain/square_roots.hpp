@@ -49,11 +49,11 @@ Matrix<N> tria_in(const Matrix<N>& T, const Matrix<N>& S) {
   return T.transpose() * tria<N, N>(T * S);
 }
 
-/// K = (P_xz / S_y') / S_y (EQUATIONS (3.9)).
+/// K = (P_xz / Sy') / Sy with P_xz = cross (EQUATIONS (3.9)).
 template <int N, int M>
-Matrix<N, M> square_root_gain(const Matrix<N, M>& P_xz, const Matrix<M>& S_y) {
-  const auto L = S_y.template triangularView<Eigen::Lower>();
-  return L.transpose().solve(L.solve(P_xz.transpose())).transpose();
+Matrix<N, M> square_root_gain(const Matrix<N, M>& cross, const Matrix<M>& Sy) {
+  const auto L = Sy.template triangularView<Eigen::Lower>();
+  return L.transpose().solve(L.solve(cross.transpose())).transpose();
 }
 
 }  // namespace montecarta::filters::plain

@@ -44,14 +44,14 @@ class Srcd : public FastSlam2 {
     const Differences<7, 2> image =
         map_uncertainty_ ? whole : observation(p, landmark, Matrix<2>::Zero());
     const Matrix<3> S = tria_in<3>(across_first_with_heading(p.pose, landmark.mean), p.factor);
-    const Matrix<2, 3> A_x = image.A.leftCols<3>();
+    const Matrix<2, 3> Ax = image.A.leftCols<3>();
     const Matrix<3, 2> K =
-        square_root_gain<3, 2>(S * A_x.transpose(), tria_of<2, 7, 7>(image.A, image.B));
+        square_root_gain<3, 2>(S * Ax.transpose(), tria_of<2, 7, 7>(image.A, image.B));
     p.pose += K * difference(z, image.mean);
     p.pose(2) = wrap(p.pose(2));
-    keep(p, tria_of<3, 3, 4, 7>(S - K * A_x, K * image.A.rightCols<4>(), K * image.B));
-    const Matrix<2> S_y = tria_of<2, 7, 7>(whole.A, whole.B);
-    return log_gaussian<2>(difference(z, whole.mean), S_y * S_y.transpose());
+    keep(p, tria_of<3, 3, 4, 7>(S - K * Ax, K * image.A.rightCols<4>(), K * image.B));
+    const Matrix<2> Sy = tria_of<2, 7, 7>(whole.A, whole.B);
+    return log_gaussian<2>(difference(z, whole.mean), Sy * Sy.transpose());
   }
 
   std::optional<double> log_likelihood(const Vector<3>& pose, const Landmark& landmark,
@@ -59,15 +59,15 @@ class Srcd : public FastSlam2 {
     if (!parts_.map) return FastSlam2::log_likelihood(pose, landmark, z);
     if (!is_far_enough(pose, landmark.mean)) return std::nullopt;
     const Observation seen = observation_from(pose, landmark);
-    return log_gaussian<2>(difference(z, seen.image.mean), seen.S_y * seen.S_y.transpose());
+    return log_gaussian<2>(difference(z, seen.image.mean), seen.Sy * seen.Sy.transpose());
   }
 
   /// Ankishan (20) to (23), as EQUATIONS (3.9).
   void update_map(const Vector<3>& pose, Landmark& landmark, const Detection& z) const override {
     if (!parts_.map) return FastSlam2::update_map(pose, landmark, z);
     if (!is_far_enough(pose, landmark.mean)) return;
-    const auto& [S, image, S_y] = observation_from(pose, landmark);
-    const Matrix<2> K = square_root_gain<2, 2>(S * image.A.transpose(), S_y);
+    const auto& [S, image, Sy] = observation_from(pose, landmark);
+    const Matrix<2> K = square_root_gain<2, 2>(S * image.A.transpose(), Sy);
     landmark.mean += K * difference(z, image.mean);
     keep(landmark, tria_of<2, 2, 2, 2>(S - K * image.A, K * R_.cwiseSqrt(), K * image.B));
   }
@@ -87,14 +87,14 @@ class Srcd : public FastSlam2 {
   struct Observation {
     Matrix<2> S;  ///< root of the covariance of the landmark
     Differences<2, 2> image;
-    Matrix<2> S_y;  ///< root of the covariance of the innovation
+    Matrix<2> Sy;  ///< root of the covariance of the innovation
   };
 
   /// Points of (pose, noise of C controls, noise of the sensor) through f.
   template <int C>
   void move_by_points(Particle& p, const Control& control, double duration) const {
-    const Matrix<C> root_Q = control_noise(belief_, control).cwiseSqrt();
-    const auto S = blocks<3, C, 2>(tria_in<3>(heading_first(), p.factor), root_Q, R_.cwiseSqrt());
+    const Matrix<C> root = control_noise(belief_, control).cwiseSqrt();
+    const auto S = blocks<3, C, 2>(tria_in<3>(heading_first(), p.factor), root, R_.cwiseSqrt());
     const auto image =
         central_differences<3, 2>(stacked<5 + C>(p.pose, Vector<C>(Vector<C>::Zero())), S, h_,
                                   MotionModel<C>{control, duration, belief_.vehicle});
@@ -115,7 +115,7 @@ class Srcd : public FastSlam2 {
     Observation seen;
     seen.S = tria_in<2>(across_first(pose, landmark.mean), factor_of(landmark));
     seen.image = central_differences<2, 1>(landmark.mean, seen.S, h_, LandmarkModel{as_pose(pose)});
-    seen.S_y = tria_of<2, 2, 2, 2>(seen.image.A, seen.image.B, R_.cwiseSqrt());
+    seen.Sy = tria_of<2, 2, 2, 2>(seen.image.A, seen.image.B, R_.cwiseSqrt());
     return seen;
   }
 

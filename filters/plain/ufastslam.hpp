@@ -68,9 +68,8 @@ class UFastSlam : public FastSlam2 {
   /// Points of (pose, noise of C controls, noise of the sensor) through f.
   template <int C>
   void move_by_points(Particle& p, const Control& control, double duration) const {
-    const Matrix<C> root_Q = control_noise(belief_, control).cwiseSqrt();
-    const auto S =
-        blocks<3, C, 2>(chol_in<3>(heading_first(), p.covariance), root_Q, R_.cwiseSqrt());
+    const Matrix<C> root = control_noise(belief_, control).cwiseSqrt();
+    const auto S = blocks<3, C, 2>(chol_in<3>(heading_first(), p.covariance), root, R_.cwiseSqrt());
     const auto image =
         unscented<3, 2>(stacked<5 + C>(p.pose, Vector<C>(Vector<C>::Zero())), S, augmented_,
                         MotionModel<C>{control, duration, belief_.vehicle});

@@ -215,7 +215,7 @@ TEST(PoseFitness, IsEquation32OrTheDensityOfThePose) {
                                 .covariance = Eigen::Matrix2d{{P.xx, P.xy}, {P.xy, P.yy}}},
                                {seen.range, seen.bearing, 0}, R);
       printed += -0.5 * at->nu.dot(R.llt().solve(at->nu));
-      density += plain::log_gaussian<2>(at->nu, at->S_f);
+      density += plain::log_gaussian<2>(at->nu, at->Sf);
     }
     EXPECT_NEAR(fitness.likelihood(pose, scan), printed, 1e-9 * (1 + std::abs(printed)));
     EXPECT_NEAR(fitness.posterior(pose, scan), density, 1e-9 * (1 + std::abs(density)));

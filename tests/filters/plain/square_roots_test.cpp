@@ -198,13 +198,13 @@ TEST(InnovationOfEquation26, IsThatOfPoseMapAndSensorOnALinearModel) {
   RngStream draw({.seed = 236, .purpose = Draw::test});
   for (int n = 0; n < 200; ++n) {
     const Eigen::Matrix3d S = tria<3, 3>(random_matrix<3, 3>(draw));
-    const Eigen::Matrix2d S_f = random_matrix<2, 2>(draw), R = random_matrix<2, 2>(draw);
+    const Eigen::Matrix2d Sf = random_matrix<2, 2>(draw), R = random_matrix<2, 2>(draw);
     const auto Hx = random_matrix<2, 3>(draw);
     const auto Hf = random_matrix<2, 2>(draw);
     const auto of_pose = central_differences<2, -1>(
         Vector<3>(0, 0, 0), S, kInterval, [&](const Vector<3>& x) -> Vector<2> { return Hx * x; });
     const auto of_map = central_differences<2, -1>(
-        Vector<2>(0, 0), S_f, kInterval, [&](const Vector<2>& f) -> Vector<2> { return Hf * f; });
+        Vector<2>(0, 0), Sf, kInterval, [&](const Vector<2>& f) -> Vector<2> { return Hf * f; });
     const Eigen::Matrix2d S_bar =
         of_map.A * of_map.A.transpose() + of_map.B * of_map.B.transpose() + R * R.transpose();
     const Eigen::Matrix3d P = S * S.transpose();
