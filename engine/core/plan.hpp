@@ -30,7 +30,7 @@ struct ColumnSelection {
   bool map = false;            ///< map_mean, map_covariance, map_seen, at every scan
   bool final_map = false;      ///< final_map_mean, final_map_covariance, final_map_seen, at the end
   bool joint = false;          ///< joint_mean, joint_covariance of filters with a joint estimate
-  bool observability = false;  ///< rotation_information of filters that report it
+  bool observability = false;  ///< own columns of filters about their observability
   std::size_t joint_scans = 16;  ///< record.joint_scans: number of scans (joint_scans_of())
   bool scans_only = false;       ///< record.rate = scan: rows of `time` only at scans
   /// record.full_runs: in_full() is stored of this number of runs, the first ones of the study.

@@ -11,7 +11,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <span>
 
@@ -104,9 +103,8 @@ struct ScanReport {
       0;  ///< number of failed factorisations that were handled by a fallback
   AssociationCounts association = {};
   double map_size = 0.0;  ///< number of landmarks; mean over the weighted particles
-  /// Information [1/rad^2] about a rotation of vehicle and map, which is unobservable, that the
-  /// linearised system gains from all detections (EQUATIONS (15.11)); NaN if not reported.
-  double rotation_information = std::numeric_limits<double>::quiet_NaN();
+  /// The values of Capabilities::own_columns, in a member of the filter.
+  std::span<const double> own = {};
 };
 
 /// The columns to which a filter writes its particles; those with an empty span are not requested.

@@ -82,7 +82,6 @@ bool has_mixture(const Cell& cell) { return cell.reports.mixture; }
 bool has_particles(const Cell& cell) { return cell.particles > 0; }
 bool has_map(const Cell& cell) { return cell.landmarks > 0; }
 bool has_joint(const Cell& cell) { return cell.reports.joint; }
-bool has_rotation_information(const Cell& cell) { return cell.reports.rotation_information; }
 bool is_imported(const Cell& cell) { return cell.imported.has_value(); }
 bool is_filter(const Cell& cell) { return !is_imported(cell); }
 bool has_pose(const Cell& cell) { return is_filter(cell) || cell.imported->has_pose; }
@@ -190,15 +189,7 @@ std::vector<ColumnKind> make_table() {
       column("joint_mean", "joint", f64, {joint, state}, "m, m, rad, m",
              "estimated pose and landmarks together", has_joint),
       column("joint_covariance", "joint", f64, {joint, state, state_column}, "(m, m, rad, m)^2",
-             "covariance of the pose and all landmarks together", has_joint),
-      {"rotation_information",
-       "observability",
-       f64,
-       {scan},
-       "rad-2",
-       "information about the heading of the whole that detections since the start are taken for",
-       has_rotation_information,
-       [](Report r) { return r.rotation_information; }}};
+             "covariance of the pose and all landmarks together", has_joint)};
 }
 
 }  // namespace
@@ -210,11 +201,10 @@ std::span<const ColumnKind> column_table() {
   return table;
 }
 
-bool is_selected(const ColumnKind& kind, const ColumnSelection& selection) {
-  const auto group =
-      std::ranges::find(column_groups(), std::string_view(kind.group), &ColumnGroup::name);
-  expect(group != column_groups().end(), "a column of no group");
-  return group->is_chosen == nullptr || selection.*(group->is_chosen);
+bool is_selected(std::string_view group, const ColumnSelection& selection) {
+  const auto found = std::ranges::find(column_groups(), group, &ColumnGroup::name);
+  expect(found != column_groups().end(), "a column of no group");
+  return found->is_chosen == nullptr || selection.*(found->is_chosen);
 }
 
 ColumnSelection in_full(ColumnSelection selection) {

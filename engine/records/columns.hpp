@@ -80,8 +80,9 @@ struct ColumnGroup {
 /// All groups, in the order of `montecarta list columns`.
 std::span<const ColumnGroup> column_groups();
 
-/// One row of the table of all columns. The layout of records, the recorder, the checks of a file
-/// and `montecarta list columns` are derived from this table.
+/// One row of the table of all columns except those that filters declare themselves (OwnColumn).
+/// The layout of records, the recorder, the checks of a file and `montecarta list columns` are
+/// derived from this table.
 struct ColumnKind {
   const char* name;
   const char* group;  ///< one of column_groups()
@@ -93,11 +94,11 @@ struct ColumnKind {
   /// Takes the number from the report of a scan; nullptr if Recorder fills the column otherwise.
   double (*of_report)(const ScanReport&) = nullptr;
 };
-/// All columns, in the order of the file.
+/// All of them, in the order of the file. The own columns of a filter follow.
 std::span<const ColumnKind> column_table();
 
-/// Whether a study with `selection` stores the column.
-bool is_selected(const ColumnKind& kind, const ColumnSelection& selection);
+/// Whether a study with `selection` stores the columns of this group.
+bool is_selected(std::string_view group, const ColumnSelection& selection);
 
 /// Adds everything that a replay shows to `selection`: covariance, ancestry, particles, map.
 ColumnSelection in_full(ColumnSelection selection);

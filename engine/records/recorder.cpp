@@ -54,6 +54,7 @@ Recorder::Recorder(RunRecord& record) : layout_(&record.layout()), scans_(record
   const bool any = !columns_.map.mean.empty() || !columns_.final_map.mean.empty();
   landmarks_.resize(any ? layout_->landmarks() : 0);
   find_reported(record);
+  find_own(record);
   choose_ancestor(record);
 }
 
@@ -75,6 +76,13 @@ void Recorder::find_reported(RunRecord& record) {
       case Element::u64:
         expect(false, "a number of a scan is f64, u8 or u32");
     }
+  }
+}
+
+void Recorder::find_own(RunRecord& record) {
+  const std::vector<std::string>& names = layout_->own_columns();
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    if (const auto c = layout_->find(names[k])) own_.push_back({k, record.column<double>(*c)});
   }
 }
 
@@ -120,6 +128,12 @@ void Recorder::record_report(const ScanReport& report, std::size_t scan) {
     };
     std::visit(put, reported.column);
   }
+  if (report.own.size() != layout_->own_columns().size())
+    throw StudyError("the filter reports " + std::to_string(report.own.size()) +
+                     " values of its own (it declares " +
+                     std::to_string(layout_->own_columns().size()) +
+                     "): set ScanReport::own at every update");
+  for (const Own& own : own_) own.column[scan] = report.own[own.index];
 }
 
 void Recorder::record_particles(const SlamFilter& filter, std::size_t scan) {

@@ -55,7 +55,14 @@ class Recorder {
     std::variant<std::span<double>, std::span<std::uint8_t>, std::span<std::uint32_t>> column;
   };
 
+  /// A column that the filter declares itself.
+  struct Own {
+    std::size_t index;  ///< in ScanReport::own
+    std::span<double> column;
+  };
+
   void find_reported(RunRecord& record);
+  void find_own(RunRecord& record);
   void choose_ancestor(RunRecord& record);
   const PoseEstimate* record_pose(const SlamFilter& filter, std::size_t row);
   void record_report(const ScanReport& report, std::size_t scan);
@@ -68,6 +75,7 @@ class Recorder {
   std::size_t scans_;  ///< number of scans of this run
   Columns columns_;
   std::vector<Reported> reported_;
+  std::vector<Own> own_;
   PoseEstimate estimate_;                 ///< the last recorded estimate
   std::vector<std::uint32_t> ancestors_;  ///< of one scan, before narrowing to 16 bits
   std::vector<std::optional<LandmarkEstimate>> landmarks_;  ///< of one scan

@@ -21,6 +21,15 @@ Column column_of(const ColumnKind& kind, const Cell& cell) {
   return column;
 }
 
+/// Throws StudyError if a column that a filter declares has the name of another one.
+void expect_new(const OwnColumn& own, const std::vector<std::string>& declared, const Cell& cell) {
+  if (std::ranges::count(column_table(), own.name, &ColumnKind::name) == 0 &&
+      std::ranges::count(declared, own.name) == 0)
+    return;
+  throw StudyError("filter " + cell.filter + ": its column " + own.name +
+                   " (there is one already): give it another name in Capabilities::own_columns");
+}
+
 }  // namespace
 
 RecordLayout::RecordLayout(const Cell& cell, const ColumnSelection& selection,
@@ -29,6 +38,10 @@ RecordLayout::RecordLayout(const Cell& cell, const ColumnSelection& selection,
       scans_(itinerary.scans()),
       particles_(cell.particles),
       landmarks_(cell.landmarks) {
+  for (const OwnColumn& own : cell.reports.own_columns) {
+    expect_new(own, own_columns_, cell);
+    own_columns_.push_back(own.name);
+  }
   if (selection.joint && cell.reports.joint)
     joint_scans_ = joint_scans_of(scans_, selection.joint_scans);
   const AxisLengths lengths{.time = scans_only_ ? scans_ : itinerary.steps(),
@@ -46,15 +59,24 @@ RecordLayout::RecordLayout(const Cell& cell, const ColumnSelection& selection,
 void RecordLayout::add_columns(const Cell& cell, const ColumnSelection& selection,
                                const AxisLengths& lengths) {
   for (const ColumnKind& kind : column_table()) {
-    if (!is_selected(kind, selection) || (kind.applies != nullptr && !kind.applies(cell))) continue;
+    if (!is_selected(kind.group, selection) || (kind.applies != nullptr && !kind.applies(cell)))
+      continue;
     if (kind.axes.front() == Axis::joint && joint_scans_.empty()) continue;
-    if (find(kind.name)) continue;
-    Column column = column_of(kind, cell);
-    for (const Axis axis : column.axes) column.shape.push_back(*length_of(axis, lengths));
-    offsets_.push_back(bytes_);
-    bytes_ += (column.bytes() + kAlignment - 1) / kAlignment * kAlignment;
-    columns_.push_back(std::move(column));
+    add_column(column_of(kind, cell), lengths);
   }
+  for (const OwnColumn& own : cell.reports.own_columns) {
+    if (!is_selected(own.group, selection)) continue;
+    add_column({own.name, Element::f64, {Axis::scan}, {}, own.units, own.long_name}, lengths);
+  }
+}
+
+/// Adds a column without its shape, if there is none of its name.
+void RecordLayout::add_column(Column column, const AxisLengths& lengths) {
+  if (find(column.name)) return;
+  for (const Axis axis : column.axes) column.shape.push_back(*length_of(axis, lengths));
+  offsets_.push_back(bytes_);
+  bytes_ += (column.bytes() + kAlignment - 1) / kAlignment * kAlignment;
+  columns_.push_back(std::move(column));
 }
 
 std::optional<std::size_t> RecordLayout::find(std::string_view name) const {

@@ -46,9 +46,13 @@ class RecordLayout {
   std::size_t landmarks() const { return landmarks_; }
   /// The scans of the rows of the joint columns, in order; empty if there are none.
   const std::vector<std::uint32_t>& joint_scans() const { return joint_scans_; }
+  /// Names of the columns that the filter declares itself, stored or not, in the order of
+  /// ScanReport::own.
+  const std::vector<std::string>& own_columns() const { return own_columns_; }
 
  private:
   void add_columns(const Cell& cell, const ColumnSelection& selection, const AxisLengths& lengths);
+  void add_column(Column column, const AxisLengths& lengths);
 
   std::vector<Column> columns_;
   std::size_t usual_columns_ = 0;
@@ -59,6 +63,7 @@ class RecordLayout {
   std::size_t particles_;
   std::size_t landmarks_;
   std::vector<std::uint32_t> joint_scans_;
+  std::vector<std::string> own_columns_;
 };
 
 /// One layout for each cell of the plan.

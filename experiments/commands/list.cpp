@@ -224,6 +224,27 @@ void describe_metric(const std::string& name) {
                         {"used by", "montecarta compare --metric, and study.until"}});
 }
 
+/// A column of the table, or one that a filter declares itself.
+struct ListedColumn {
+  std::string name, group, axes, units, long_name;
+};
+
+std::vector<ListedColumn> listed_columns() {
+  std::vector<ListedColumn> columns;
+  for (const ColumnKind& kind : column_table()) {
+    std::string axes = "run";
+    for (const Axis axis : kind.axes) axes.append(", ").append(engine::name_of(axis));
+    columns.push_back({kind.name, kind.group, axes, kind.units, kind.long_name});
+  }
+  for (const FilterKind& filter : known_filters()) {
+    for (const OwnColumn& own : filter.reports.own_columns) {
+      if (std::ranges::count(columns, own.name, &ListedColumn::name) == 0)
+        columns.push_back({own.name, own.group, "run, scan", own.units, own.long_name});
+    }
+  }
+  return columns;
+}
+
 void list_columns() {
   std::cout << wrapped(
       "The study chooses groups of columns by record.columns. The group pose is "
@@ -231,8 +252,8 @@ void list_columns() {
       output_width());
   for (const ColumnGroup& group : column_groups()) {
     TextPairs items;
-    for (const ColumnKind& kind : column_table()) {
-      if (std::string_view(kind.group) == group.name) items.emplace_back(kind.name, kind.long_name);
+    for (const ListedColumn& column : listed_columns()) {
+      if (column.group == group.name) items.emplace_back(column.name, column.long_name);
     }
     std::cout << group.name << "\n" << listing(items);
   }
@@ -240,17 +261,17 @@ void list_columns() {
 }
 
 void describe_column(const std::string& name) {
-  std::vector<std::string> known;
-  for (const ColumnKind& kind : column_table()) known.emplace_back(kind.name);
-  const auto found = std::ranges::find(known, name);
-  if (found == known.end()) throw_unknown("columns", name, known);
-  const ColumnKind& kind = column_table()[static_cast<std::size_t>(found - known.begin())];
-  std::string axes = "run";
-  for (const Axis axis : kind.axes) axes.append(", ").append(engine::name_of(axis));
-  std::cout << wrapped(name + ": " + kind.long_name, output_width()) << "\n"
-            << listing({{"stored if", std::string("record.columns has ") + kind.group},
-                        {"axes", axes},
-                        {"unit", kind.units}});
+  const std::vector<ListedColumn> columns = listed_columns();
+  const auto found = std::ranges::find(columns, name, &ListedColumn::name);
+  if (found == columns.end()) {
+    std::vector<std::string> known;
+    for (const ListedColumn& column : columns) known.push_back(column.name);
+    throw_unknown("columns", name, known);
+  }
+  std::cout << wrapped(name + ": " + found->long_name, output_width()) << "\n"
+            << listing({{"stored if", "record.columns has " + found->group},
+                        {"axes", found->axes},
+                        {"unit", found->units}});
 }
 
 /// One kind of entries: how all of them are listed, and how one of them is described.

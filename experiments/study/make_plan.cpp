@@ -105,27 +105,29 @@ std::function<std::unique_ptr<SlamFilter>()> maker_of(const CellSpec& spec,
   return make;
 }
 
-/// The capabilities of the filter that it has with these options and this sensor.
-Capabilities capabilities_of(const CellSpec& spec, const Settings& s,
-                             const FilterOptions& options) {
-  Capabilities reports = spec.filter->reports;
-  if (spec.filter->drops_mixture && spec.filter->drops_mixture(options)) reports.mixture = false;
-  if (!fixes_landmark(sensor_of(s, "belief"))) reports.rotation_information = false;
+FilterSetup setup_of(const CellSpec& spec, const Study& study) {
+  std::map<std::string, std::string, std::less<>> values(spec.options.begin(), spec.options.end());
+  return {.belief = belief_of(study.settings, spec),
+          .association = association_of(study.settings),
+          .options = FilterOptions(std::move(values)),
+          .landmarks = identities_of(study)};
+}
+
+/// The capabilities that the filter has with this setup.
+Capabilities capabilities_of(const FilterKind& filter, const FilterSetup& setup) {
+  Capabilities reports = filter.reports;
+  if (filter.restrict_reports) filter.restrict_reports(setup, reports);
   return reports;
 }
 
 Cell cell_of(const CellSpec& spec, const Study& study, ExternalPrograms programs) {
-  std::map<std::string, std::string, std::less<>> values(spec.options.begin(), spec.options.end());
-  const FilterSetup setup{.belief = belief_of(study.settings, spec),
-                          .association = association_of(study.settings),
-                          .options = FilterOptions(std::move(values)),
-                          .landmarks = identities_of(study)};
+  const FilterSetup setup = setup_of(spec, study);
   const FilterKind& filter = *spec.filter;
   return {.label = spec.label,
           .filter = filter.name,
           .long_name = filter.long_name + (spec.distinction.empty() ? "" : ", " + spec.distinction),
           .particles = particles_of(spec),
-          .reports = capabilities_of(spec, study.settings, setup.options),
+          .reports = capabilities_of(filter, setup),
           .landmarks = map_rows_of(setup, study.settings),
           .settings = settings_of(spec),
           .make_filter = maker_of(spec, setup, programs)};
@@ -150,7 +152,7 @@ void expect_joint_estimates(const Study& study) {
   throw StudyError(study.settings.place("record", "columns") + ": joint " + objection);
 }
 
-void expect_rotation_information(const Study& study) {
+void expect_observability(const Study& study) {
   const std::string objection = objection_to_observability(study);
   if (objection.empty()) return;
   throw StudyError(study.settings.place("record", "columns") + ": observability " + objection);
@@ -221,11 +223,11 @@ std::string objection_to_joint(const Study& study) {
 }
 
 std::string objection_to_observability(const Study& study) {
-  const auto reports_it = [](const CellSpec& cell) {
-    return cell.filter->reports.rotation_information;
+  const auto reports_it = [&](const CellSpec& cell) {
+    const Capabilities reports = capabilities_of(*cell.filter, setup_of(cell, study));
+    return std::ranges::count(reports.own_columns, "observability", &OwnColumn::group) > 0;
   };
-  const bool fixes = fixes_landmark(sensor_of(study.settings, "belief"));
-  if (fixes && std::ranges::any_of(study.cells, reports_it)) return {};
+  if (std::ranges::any_of(study.cells, reports_it)) return {};
   return "(no cell reports the information of its detections about the common heading): take "
          "observability out, or add a cell of ekf_slam or riekf_slam with a sensor of which one "
          "detection fixes a landmark";
@@ -245,7 +247,7 @@ StudyPlan make_plan(const Study& study, std::optional<RunRange> range, ExternalP
   for (const CellSpec& spec : study.cells) plan.cells.push_back(cell_of(spec, study, programs));
   plan.columns = columns_of(settings);
   if (plan.columns.joint) expect_joint_estimates(study);
-  if (plan.columns.observability) expect_rotation_information(study);
+  if (plan.columns.observability) expect_observability(study);
   plan.drives = drives_of(study, plan.seed);
   if (study.until) plan.is_enough = rule_of(*study.until);
   plan.own_landmarks = own_landmarks_of(study, plan.seed);

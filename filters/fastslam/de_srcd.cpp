@@ -50,9 +50,10 @@ FilterKind de_srcd_kind() {
           .source = "Ankishan et al. 2016; EQUATIONS 10",
           .reports = {.particles = true, .mixture = true},
           .options = std::move(options),
-          .drops_mixture =
-              [](const FilterOptions& chosen) {
-                return weight_time(evolved_settings(chosen).mode) == WeightTime::after_draw;
+          .restrict_reports =
+              [](const FilterSetup& setup, Capabilities& reports) {
+                const EvolutionMode mode = evolved_settings(setup.options).mode;
+                if (weight_time(mode) == WeightTime::after_draw) reports.mixture = false;
               },
           .make = make_de_srcd<Lanes>};
 }

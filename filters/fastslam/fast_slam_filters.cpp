@@ -26,8 +26,8 @@ WeightForm weight_form(const FilterOptions& options) {
   return chosen<WeightForm>(options.choice("weights"), kWeightForms);
 }
 
-bool weighs_by_ratio(const FilterOptions& options) {
-  return weight_form(options) == WeightForm::ratio;
+void drop_mixture_of_ratio(const FilterSetup& setup, Capabilities& reports) {
+  if (weight_form(setup.options) == WeightForm::ratio) reports.mixture = false;
 }
 
 Parameter map_uncertainty_option() {
@@ -89,7 +89,7 @@ FilterKind fastslam2_kind() {
                                                "form of the importance weight (EQUATIONS 6)")}}),
           .sensors = {},
           .delays_initialisation = true,
-          .drops_mixture = weighs_by_ratio,
+          .restrict_reports = drop_mixture_of_ratio,
           .make = make_fastslam2_of_sensor};
 }
 
@@ -114,7 +114,7 @@ FilterKind ufastslam_kind() {
             map_uncertainty_option()}}),
       .sensors = {},
       .delays_initialisation = true,
-      .drops_mixture = weighs_by_ratio,
+      .restrict_reports = drop_mixture_of_ratio,
       .make = [](const FilterSetup& setup) {
         return make_refined_of_sensor(setup, unscented_points(setup));
       }};
@@ -131,7 +131,7 @@ FilterKind srcd_kind() {
                              {map_uncertainty_option()}}),
           .sensors = {},
           .delays_initialisation = true,
-          .drops_mixture = weighs_by_ratio,
+          .restrict_reports = drop_mixture_of_ratio,
           .make = [](const FilterSetup& setup) {
             return make_refined_of_sensor(
                 setup, central_difference_points(setup, map_uncertainty(setup.options)));
@@ -146,7 +146,7 @@ FilterKind srcd_aided_kind() {
       .reports = {.particles = true, .mixture = true},
       .options = joined(
           {population_options(), {weights_of_sigma_points_option()}, central_difference_options()}),
-      .drops_mixture = weighs_by_ratio,
+      .restrict_reports = drop_mixture_of_ratio,
       .make = make_srcd_aided<Lanes>};
 }
 
@@ -156,7 +156,7 @@ FilterKind srcd_pf_kind() {
           .source = "Ankishan et al. 2016, Table 1; EQUATIONS 8",
           .reports = {.particles = true, .mixture = true},
           .options = srcd_kind().options,
-          .drops_mixture = weighs_by_ratio,
+          .restrict_reports = drop_mixture_of_ratio,
           .make = make_srcd_pf<Lanes>};
 }
 

@@ -37,8 +37,8 @@ std::unique_ptr<SlamFilter> make_fast_slam(const FilterSetup& setup,
 
 /// Reads the option `weights`.
 WeightForm weight_form(const FilterOptions& options);
-/// Returns whether `weights` is `ratio`, which leaves no mixture (FilterKind::drops_mixture).
-bool weighs_by_ratio(const FilterOptions& options);
+/// Removes the mixture if `weights` is `ratio`, which leaves none (FilterKind::restrict_reports).
+void drop_mixture_of_ratio(const FilterSetup& setup, Capabilities& reports);
 
 /// Makes FastSLAM with poses that are refined by the scan. Each Gaussian has its own transform,
 /// given as that of range and bearing.

@@ -11,7 +11,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -59,11 +58,10 @@ class JointBelief {
   const Outcome& outcome() const { return outcome_; }
   const MapAssociation& association() const { return association_; }
   /// Information [1/rad^2] about a rotation of vehicle and map that the linearised system gains
-  /// from all detections since the start, though they have none (EQUATIONS (15.11)). NaN if one
-  /// detection does not fix a landmark.
-  double rotation_information() const {
-    return fixes_landmark(sensor_) ? rotation_information_
-                                   : std::numeric_limits<double>::quiet_NaN();
+  /// from all detections since the start, though they have none (EQUATIONS (15.11)). It is empty
+  /// if one detection does not fix a landmark.
+  std::span<const double> rotation_information() const {
+    return {&rotation_information_, fixes_landmark(sensor_) ? 1U : 0U};
   }
   /// A detection that updated the belief.
   struct UsedDetection {

@@ -72,7 +72,7 @@ class JointFilter final : public SlamFilter {
     report_ = {.log_likelihood = log_likelihood,
                .numerical_faults = faults,
                .association = joint_.association().counts(),
-               .rotation_information = joint_.rotation_information()};
+               .own = joint_.rotation_information()};
     innovations_.start(context, 1, scan.size(), 0.0);
     const auto innovations = innovations_.of_block(0, 1.0);
     for (const auto& [k, v, S] : joint_.used_detections()) {
@@ -125,15 +125,25 @@ std::unique_ptr<SlamFilter> make_robocentric(const FilterSetup& setup) {
                                                            .linearisation = relative_to_vehicle()});
 }
 
+OwnColumn rotation_information_column() {
+  return {"rotation_information", "observability", "rad-2",
+          "information about the heading of the whole that detections since the start are taken "
+          "for"};
+}
+
 FilterKind joint_kind(const char* name, const char* long_name, const char* source,
                       std::vector<Parameter> options,
                       std::unique_ptr<SlamFilter> make(const FilterSetup&)) {
   return {.name = name,
           .long_name = long_name,
           .source = source,
-          .reports = {.joint = true, .rotation_information = true},
+          .reports = {.joint = true, .own_columns = {rotation_information_column()}},
           .options = std::move(options),
           .sensors = {RangeBearingSensor::kName, PositionSensor::kName},
+          .restrict_reports =
+              [](const FilterSetup& setup, Capabilities& reports) {
+                if (!fixes_landmark(setup.belief.sensor)) reports.own_columns.clear();
+              },
           .make = make};
 }
 

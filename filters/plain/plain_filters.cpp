@@ -62,7 +62,8 @@ FilterKind plain_version(FilterKind kind, const PlainFilter& plain) {
   for (Parameter& option : kind.options) {
     if (option.key == "resampling") option.choices = {"systematic", "stratified"};
   }
-  kind.reports.joint = kind.reports.rotation_information = kind.delays_initialisation = false;
+  kind.reports.joint = kind.delays_initialisation = false;
+  kind.reports.own_columns.clear();
   kind.sensors = {RangeBearingSensor::kName};
   kind.make = plain.make;
   return kind;

@@ -75,8 +75,7 @@ struct FilterKind {
   std::string name;       ///< name in study files
   std::string long_name;  ///< name in legends
   std::string source;     ///< paper and equation
-  /// With particles it has the option `particles` (always the first). drops_mixture may remove the
-  /// mixture.
+  /// With particles it has the option `particles` (always the first).
   Capabilities reports = {};
   std::vector<Parameter> options;  ///< in the order of the documentation
   /// Sensors that it supports, mounted at the pose; empty means all sensors, mounted anywhere.
@@ -84,7 +83,8 @@ struct FilterKind {
   /// True if it initialises landmarks that one detection does not fix. It then needs known
   /// association.
   bool delays_initialisation = false;
-  std::function<bool(const FilterOptions&)> drops_mixture = {};  ///< true: these options remove it
+  /// Removes from the capabilities those that it does not have with this setup; empty: it has all.
+  std::function<void(const FilterSetup&, Capabilities&)> restrict_reports = {};
   std::function<std::unique_ptr<SlamFilter>(const FilterSetup&)> make;
 };
 

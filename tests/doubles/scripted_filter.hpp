@@ -33,9 +33,11 @@ class ScriptedFilter : public SlamFilter {
     std::size_t landmarks = 3;
     std::optional<Mishap> mishap{};
     std::chrono::microseconds pace{0};  ///< pause at every step
+    std::size_t own_values = 0;         ///< number of values in ScanReport::own
   };
 
-  explicit ScriptedFilter(Script script) : script_(script), particles_(script.particles) {}
+  explicit ScriptedFilter(Script script)
+      : script_(script), particles_(script.particles), own_(script.own_values) {}
 
   void start(const Pose& start) override {
     std::ranges::fill(particles_, start);
@@ -66,6 +68,8 @@ class ScriptedFilter : public SlamFilter {
     report_.nis_dof = static_cast<std::uint32_t>(2 * scan.size());
     report_.association = {.correct = static_cast<double>(scan.size()), .missed = 1.0};
     seen_ = std::min(script_.landmarks, seen_ + scan.size());
+    for (std::size_t k = 0; k < own_.size(); ++k) own_[k] = static_cast<double>(scan.size() + k);
+    report_.own = own_;
   }
 
   PoseEstimate estimate() const override {
@@ -132,6 +136,7 @@ class ScriptedFilter : public SlamFilter {
 
   Script script_;
   std::vector<Pose> particles_;
+  std::vector<double> own_;
   ScanReport report_;
   std::size_t seen_ = 0;
   bool broken_ = false;

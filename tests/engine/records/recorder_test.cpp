@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/records/recorder.hpp"
 
+#include "tests/doubles/complaint.hpp"
 #include "tests/doubles/matchers.hpp"
 #include "tests/doubles/scripted_result.hpp"
 
@@ -126,6 +127,46 @@ TEST(Recorder, StoresJointEstimatesAtTheEndOfEachPartOfTheRun) {
   EXPECT_EQ(covariance[81 + 10], 1.0);
   EXPECT_THAT(filled.column<std::uint32_t>("numerical_faults"),
               ElementsAre(0u, 1u, 0u, 1u, 0u, 1u));
+}
+
+/// A plan whose first cell declares two columns of its own and reports this number of values.
+StudyPlan plan_with_own_columns(std::size_t values) {
+  StudyPlan plan = small_result_plan();
+  plan.cells[0] = scripted_cell("own", {.own_values = values});
+  plan.cells[0].reports.own_columns = {{"seen", "pose", "1", "detections"},
+                                       {"seen_plus_1", "observability", "m", "one more"}};
+  return plan;
+}
+
+TEST(Recorder, StoresTheColumnsThatAFilterDeclares) {
+  StudyPlan plan = plan_with_own_columns(2);
+  EXPECT_FALSE(layout_of(plan).find("seen_plus_1")) << "its group is not chosen";
+  plan.columns.observability = true;
+  FilledRecord filled(plan, 0, 0);
+  const Column& column = filled.layout.columns()[*filled.layout.find("seen_plus_1")];
+  EXPECT_EQ(column.units, "m");
+  EXPECT_THAT(column.axes, ElementsAre(Axis::scan));
+  for (std::size_t s = 0; s < plan.drives->itinerary().scans(); ++s) {
+    const auto detections = static_cast<double>(filled.drive.scan(s).size());
+    EXPECT_EQ(filled.column<double>("seen")[s], detections);
+    EXPECT_EQ(filled.column<double>("seen_plus_1")[s], detections + 1.0);
+  }
+  EXPECT_FALSE(FilledRecord(plan, 1, 0).layout.find("seen")) << "of another filter";
+}
+
+TEST(Recorder, RefusesOtherValuesThanTheFilterDeclares) {
+  const StudyPlan plan = plan_with_own_columns(1);
+  EXPECT_THAT(complaint_of([&] { FilledRecord(plan, 0, 0); }),
+              HasSubstr("reports 1 values of its own (it declares 2)"));
+}
+
+TEST(RecordLayout, RefusesAnOwnColumnWithTheNameOfAnother) {
+  for (const char* name : {"nis", "seen"}) {
+    StudyPlan plan = plan_with_own_columns(2);
+    plan.cells[0].reports.own_columns[1].name = name;
+    EXPECT_THAT(complaint_of([&] { layout_of(plan); }),
+                HasSubstr("its column " + std::string(name) + " (there is one already)"));
+  }
 }
 
 TEST(JointScans, AreTheLastOfEqualParts) {

@@ -9,6 +9,7 @@
 #include "experiments/study/settings.hpp"
 #include "experiments/study/study.hpp"
 #include "experiments/text/words.hpp"
+#include "filters/factory.hpp"
 #include "tests/doubles/complaint.hpp"
 #include "tests/doubles/matchers.hpp"
 #include "tests/doubles/scratch_folder.hpp"
@@ -16,6 +17,9 @@
 #include "tests/experiments/study/study_text.hpp"
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 
 namespace montecarta::experiments {
 namespace {
@@ -124,6 +128,20 @@ TEST(Plan, HasAMixtureWhereTheEstimatesHaveOne) {
     mixtures += cell.reports.mixture ? 1 : 0;
   }
   EXPECT_EQ(mixtures, 7U);
+}
+
+TEST(OwnColumns, AreInTheDescriptionOfTheFormat) {
+  std::ifstream file(std::filesystem::path(MONTECARTA_SOURCE_DIR) / "analysis/FORMAT.md");
+  const std::string format((std::istreambuf_iterator<char>(file)), {});
+  std::size_t columns = 0;
+  for (const FilterKind& kind : filter_kinds()) {
+    for (const OwnColumn& own : kind.reports.own_columns) {
+      const std::string row = "`" + own.name + "` | f64 {run, scan} | " + own.units + " |";
+      EXPECT_THAT(format, HasSubstr(row)) << "of " << kind.name;
+      ++columns;
+    }
+  }
+  EXPECT_GT(columns, 0U);
 }
 
 TEST(Plan, CanScanAsThePublicSimulatorDoes) {

@@ -27,7 +27,7 @@ double information_of(const Case& one) {
   const auto filter = make_filter(one.kind, settings, {{"iterations", one.iterations}});
   double before = 0.0, dof = 0.0;
   drive_through(*filter, small_world(settings), {4.0, -3.0, 0.5}, [&](std::size_t scan) {
-    const double now = filter->report().rotation_information;
+    const double now = filter->report().own.front();
     EXPECT_GE(now, before) << "scan " << scan;
     before = now;
     dof += filter->report().nis_dof;
@@ -62,7 +62,7 @@ TEST(RotationInformation, IsNotToldOfASensorThatDoesNotFixLandmarks) {
   const Detection one{.values = {0.3}, .identity = 0};
   filter->start({});
   filter->update(StepContext(1, 0, 0, Parallel::serial()), Scan(&one, 1));
-  EXPECT_TRUE(std::isnan(filter->report().rotation_information));
+  EXPECT_TRUE(filter->report().own.empty());
 }
 
 TEST(RiekfSlam, IsEkfSlamUntilALandmarkIsSeenAgain) {

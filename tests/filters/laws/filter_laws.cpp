@@ -35,6 +35,14 @@ Pose driven_on(const double* pose, const SmallWorldSettings& settings) {
   return next;
 }
 
+TEST_P(EveryFilter, ReportsTheColumnsOfItsOwnThatItDeclares) {
+  const SmallWorldSettings settings{.scans = 3};
+  const auto filter = make_default(GetParam(), 5, settings);
+  const std::size_t declared = GetParam().reports.own_columns.size();
+  drive_through(*filter, small_world(settings), Pose(),
+                [&](std::size_t) { EXPECT_EQ(filter->report().own.size(), declared); });
+}
+
 TEST_P(EveryFilter, WalkingBackThroughAncestorsNeverJumpsFartherThanTheVehicleCanMove) {
   if (!GetParam().reports.particles) GTEST_SKIP() << "a filter without particles has no genealogy";
   // The sensor is so rough that the cloud grows metres wide: a wrong ancestor stands too far away.
