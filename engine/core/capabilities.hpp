@@ -6,6 +6,8 @@
 
 namespace montecarta::engine {
 
+class SlamFilter;
+
 /// A number of every scan that only some filters report. The filter declares it here and reports
 /// its value in ScanReport::own.
 struct OwnColumn {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/fastslam/de_srcd.hpp"
 
+#include "filters/setup/filter_kind.hpp"
 #include "filters/setup/filter_setup.hpp"
 
 #include <string>

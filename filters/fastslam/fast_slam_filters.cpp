@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/fastslam/fast_slam_filters.hpp"
 
+#include "filters/setup/filter_kind.hpp"
+
 #include <string>
 
 namespace montecarta::filters {
@@ -20,14 +22,15 @@ Parameter weights_of_sigma_points_option() {
                           "form of the importance weight (EQUATIONS 6)");
 }
 
+/// The weights `ratio` leave no mixture.
+void drop_mixture_of_ratio(const FilterSetup& setup, Capabilities& reports) {
+  if (weight_form(setup.options) == WeightForm::ratio) reports.mixture = false;
+}
+
 }  // namespace
 
 WeightForm weight_form(const FilterOptions& options) {
   return chosen<WeightForm>(options.choice("weights"), kWeightForms);
-}
-
-void drop_mixture_of_ratio(const FilterSetup& setup, Capabilities& reports) {
-  if (weight_form(setup.options) == WeightForm::ratio) reports.mixture = false;
 }
 
 Parameter map_uncertainty_option() {

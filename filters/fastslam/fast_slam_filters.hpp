@@ -4,7 +4,6 @@
 #include "filters/fastslam/fast_slam.hpp"
 #include "filters/fastslam/gaussian_proposal.hpp"
 #include "filters/fastslam/known_association.hpp"
-#include "filters/fastslam/motion_sampling.hpp"
 #include "filters/fastslam/nearest_association.hpp"
 #include "filters/fastslam/sensor_policy.hpp"
 
@@ -12,6 +11,14 @@
 #include <utility>
 
 namespace montecarta::filters {
+
+// Who makes FastSLAM I or a filter whose sensor does not fix landmarks includes their headers.
+template <class Real, KeepsLandmarks<Real> MapTransform>
+class MotionSampling;
+template <class Real>
+class DelayedKnownAssociation;
+
+struct FilterKind;
 
 /// Makes FastSLAM with the given proposal and the association of the setup. `SensorPolicy` is
 /// SensorAtPose or OnMounting, according to the sensor of the setup.
@@ -37,8 +44,6 @@ std::unique_ptr<SlamFilter> make_fast_slam(const FilterSetup& setup,
 
 /// Reads the option `weights`.
 WeightForm weight_form(const FilterOptions& options);
-/// Removes the mixture if `weights` is `ratio`, which leaves none (FilterKind::restrict_reports).
-void drop_mixture_of_ratio(const FilterSetup& setup, Capabilities& reports);
 
 /// Makes FastSLAM with poses that are refined by the scan. Each Gaussian has its own transform,
 /// given as that of range and bearing.

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "filters/fastslam/delayed_association.hpp"
 #include "filters/fastslam/fast_slam_filters.hpp"
+#include "filters/fastslam/motion_sampling.hpp"
 
 std::unique_ptr<montecarta::engine::SlamFilter> montecarta::filters::make_fastslam1_of_sensor(
     const FilterSetup& setup) {

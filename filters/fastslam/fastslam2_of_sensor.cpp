@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "filters/fastslam/delayed_association.hpp"
 #include "filters/fastslam/fast_slam_filters.hpp"
 
 std::unique_ptr<montecarta::engine::SlamFilter> montecarta::filters::make_fastslam2_of_sensor(

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/core/slam_filter.hpp"
+#include "filters/setup/filter_kind.hpp"
 #include "filters/setup/filter_setup.hpp"
 
 #include <memory>

@@ -9,6 +9,7 @@
 #include "filters/moments/gaussians.hpp"
 #include "filters/moments/motion_increment.hpp"
 #include "filters/population/population.hpp"
+#include "filters/setup/filter_kind.hpp"
 
 #include <algorithm>
 #include <memory>

@@ -2,6 +2,7 @@
 #include "filters/models/sensor_kinds.hpp"
 
 #include "engine/numbers/real.hpp"
+#include "filters/models/eigen_jacobians.hpp"
 
 #include <cmath>
 

@@ -3,7 +3,6 @@
 
 #include "engine/core/drive.hpp"
 #include "engine/numbers/angle.hpp"
-#include "filters/models/eigen_jacobians.hpp"
 #include "filters/models/parameter.hpp"
 #include "filters/models/range_bearing.hpp"
 
@@ -34,14 +33,14 @@ auto& deviation_of(Quantity quantity, Owner& owner) {
 /// 0.
 struct LinearisedDetection {
   Eigen::Vector2d value;
-  Matrix23 by_pose;  ///< derivative by the pose of the sensor
+  Eigen::Matrix<double, 2, 3> by_pose;  ///< derivative by the pose of the sensor
   Eigen::Matrix2d by_landmark;
 };
 
 /// The landmark that one detection fixes, with derivatives.
 struct PlacedLandmark {
-  Eigen::Vector2d point;  ///< [m]
-  Matrix23 by_pose;       ///< derivative by the pose of the sensor
+  Eigen::Vector2d point;                ///< [m]
+  Eigen::Matrix<double, 2, 3> by_pose;  ///< derivative by the pose of the sensor
   Eigen::Matrix2d by_detection;
 };
 

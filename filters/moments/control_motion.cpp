@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/moments/control_motion.hpp"
 
+#include "filters/models/ackermann.hpp"
+
 #include <array>
 #include <cmath>
 #include <string>

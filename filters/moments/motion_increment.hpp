@@ -2,11 +2,11 @@
 #pragma once
 
 #include "engine/numbers/real.hpp"
-#include "filters/models/ackermann.hpp"
-#include "filters/models/vehicle.hpp"
 #include "filters/moments/gaussians.hpp"
 #include "filters/moments/sigma_rule.hpp"
 #include "filters/setup/filter_setup.hpp"
+
+#include <array>
 
 namespace montecarta::filters {
 
@@ -24,10 +24,7 @@ class MotionIncrement {
   void restart() { *this = MotionIncrement(); }
 
   /// Adds one control step of `duration` [s], linearised.
-  void advance(const Control& control, double duration, const Belief& belief) {
-    const auto sigma = deviations_of(belief.control, control, belief.vehicle);
-    std::visit([&](const auto& one) { advance(one, control, duration, sigma); }, belief.vehicle);
-  }
+  void advance(const Control& control, double duration, const Belief& belief);
 
   const Pose& pose() const { return pose_; }
   const Symmetric3<double>& covariance() const { return covariance_; }
@@ -45,18 +42,7 @@ class MotionIncrement {
  private:
   template <class V>
   void advance(const V& vehicle, const Control& control, double duration,
-               const std::array<double, Control::kMost>& sigma) {
-    const double angle = bend_angle(vehicle, control, duration);
-    const auto [heading, turning_angle] = directions_of<2>({pose_.heading, angle});
-    const auto [pose, F] =
-        linearised_move(pose_, heading, control, {angle, turning_angle}, duration, vehicle);
-    covariance_ = sheared(covariance_, F.x_heading, F.y_heading);
-    for (std::size_t i = 0; i < kControlsOf<V>; ++i) {
-      const auto& [x, y, turn] = F.by_control[i];
-      add_outer(covariance_, sigma[i] * sigma[i], {x, y, turn});
-    }
-    pose_ = pose;
-  }
+               const std::array<double, Control::kMost>& sigma);
 
   Pose pose_;
   Symmetric3<double> covariance_;

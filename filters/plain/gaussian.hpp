@@ -4,6 +4,7 @@
 #include "engine/core/pose.hpp"
 #include "engine/numbers/angle.hpp"
 #include "engine/random/stream.hpp"
+#include "filters/models/eigen_jacobians.hpp"
 
 #include <Eigen/Dense>
 #include <Eigen/Geometry>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "filters/setup/filter_setup.hpp"
+#include "filters/setup/filter_kind.hpp"
 
 #include <span>
 #include <vector>

@@ -6,6 +6,7 @@
 #include "filters/moments/control_motion.hpp"
 #include "filters/relative/relative_chain.hpp"
 #include "filters/relative/relative_gaussian.hpp"
+#include "filters/setup/filter_kind.hpp"
 
 #include <optional>
 #include <vector>

@@ -2,6 +2,7 @@
 #include "filters/smoothing/smoother.hpp"
 
 #include "filters/association/map_association.hpp"
+#include "filters/setup/filter_kind.hpp"
 #include "filters/setup/filter_setup.hpp"
 #include "filters/smoothing/relative_laplace.hpp"
 

@@ -4,6 +4,7 @@
 #include "engine/core/slam_filter.hpp"
 #include "filters/joint/joint_belief.hpp"
 #include "filters/moments/control_motion.hpp"
+#include "filters/setup/filter_kind.hpp"
 #include "filters/smoothing/elimination.hpp"
 
 #include <vector>

@@ -14,10 +14,10 @@ std::string text_of(const std::string& path) {
 }
 
 TEST(OwnFilterPage, QuotesTheExampleThatIsCompiled) {
-  const std::string example = text_of("filters/dead_reckoning.hpp");
+  const std::string example = text_of("filters/dead_reckoning.cpp");
   ASSERT_FALSE(example.empty());
   EXPECT_NE(text_of("filters/WRITE_YOUR_OWN.md").find(example), std::string::npos)
-      << "filters/WRITE_YOUR_OWN.md must quote filters/dead_reckoning.hpp as it stands";
+      << "filters/WRITE_YOUR_OWN.md must quote filters/dead_reckoning.cpp as it stands";
 }
 
 }  // namespace

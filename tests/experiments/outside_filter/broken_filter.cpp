@@ -2,6 +2,7 @@
 // A filter that the laws must refuse: dead reckoning that forgets nothing of the run before.
 #include "filters/dead_reckoning.hpp"
 #include "filters/factory.hpp"
+#include "filters/setup/filter_setup.hpp"
 
 namespace {
 
@@ -9,23 +10,23 @@ using namespace montecarta::filters;
 
 class Remembering final : public SlamFilter {
  public:
-  explicit Remembering(const FilterSetup& setup) : inner_(setup) {}
+  explicit Remembering(const FilterSetup& setup) : inner_(dead_reckoning_kind().make(setup)) {}
   void start(const Pose& start) override {
-    if (!started_) inner_.start(start);
+    if (!started_) inner_->start(start);
     started_ = true;
   }
   void predict(const StepContext& context, const Control& control, double duration) override {
-    inner_.predict(context, control, duration);
+    inner_->predict(context, control, duration);
   }
-  void update(const StepContext& context, Scan scan) override { inner_.update(context, scan); }
-  PoseEstimate estimate() const override { return inner_.estimate(); }
-  const ScanReport& report() const override { return inner_.report(); }
+  void update(const StepContext& context, Scan scan) override { inner_->update(context, scan); }
+  PoseEstimate estimate() const override { return inner_->estimate(); }
+  const ScanReport& report() const override { return inner_->report(); }
   void map(std::span<std::optional<LandmarkEstimate>> landmarks) const override {
-    inner_.map(landmarks);
+    inner_->map(landmarks);
   }
 
  private:
-  DeadReckoning inner_;
+  std::unique_ptr<SlamFilter> inner_;
   bool started_ = false;
 };
 

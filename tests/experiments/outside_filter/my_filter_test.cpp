@@ -13,12 +13,9 @@ namespace {
 TEST(MyFilter, EndsWhereTheNoiseOfTheControlsLeavesIt) {
   const SmallWorldSettings settings;
   const SmallWorld world = small_world(settings);
-  DeadReckoning filter({.belief = settings.noise,
-                        .association = {},
-                        .options = FilterOptions({}),
-                        .landmarks = settings.landmarks});
-  drive_through(filter, world, world.itinerary.start, [](std::size_t /*scan*/) {});
-  const auto [mean, covariance] = filter.estimate().spread;
+  const auto filter = make_filter(dead_reckoning_kind(), settings);
+  drive_through(*filter, world, world.itinerary.start, [](std::size_t /*scan*/) {});
+  const auto [mean, covariance] = filter->estimate().spread;
   const Pose& truth = world.drive.truth.back();
   EXPECT_NEAR(mean.x, truth.x, 4.0 * std::sqrt(covariance(0, 0)));
   EXPECT_NEAR(mean.y, truth.y, 4.0 * std::sqrt(covariance(1, 1)));

@@ -3,6 +3,7 @@
 
 #include "filters/factory.hpp"
 #include "filters/models/eigen_jacobians.hpp"
+#include "filters/setup/filter_setup.hpp"
 
 #include <Eigen/Dense>
 

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "filters/moments/motion_increment.hpp"
+
+#include "filters/models/ackermann.hpp"
+
+namespace montecarta::filters {
+
+template <class V>
+void MotionIncrement::advance(const V& vehicle, const Control& control, double duration,
+                              const std::array<double, Control::kMost>& sigma) {
+  const double angle = bend_angle(vehicle, control, duration);
+  const auto [heading, turning_angle] = directions_of<2>({pose_.heading, angle});
+  const auto [pose, F] =
+      linearised_move(pose_, heading, control, {angle, turning_angle}, duration, vehicle);
+  covariance_ = sheared(covariance_, F.x_heading, F.y_heading);
+  for (std::size_t i = 0; i < kControlsOf<V>; ++i) {
+    const auto& [x, y, turn] = F.by_control[i];
+    add_outer(covariance_, sigma[i] * sigma[i], {x, y, turn});
+  }
+  pose_ = pose;
+}
+
+void MotionIncrement::advance(const Control& control, double duration, const Belief& belief) {
+  const auto sigma = deviations_of(belief.control, control, belief.vehicle);
+  std::visit([&](const auto& one) { advance(one, control, duration, sigma); }, belief.vehicle);
+}
+
+}  // namespace montecarta::filters

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/core/capabilities.hpp"
+#include "engine/namespaces.hpp"
+#include "filters/models/parameter.hpp"
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace montecarta::filters {
+
+struct FilterSetup;
+
+/// The name of the sensor of range and bearing alone.
+std::vector<std::string> range_and_bearing();
+
+/// A filter by name, one line in the table of factory.cpp.
+struct FilterKind {
+  std::string name;       ///< name in study files
+  std::string long_name;  ///< name in legends
+  std::string source;     ///< paper and equation
+  /// With particles it has the option `particles` (always the first).
+  Capabilities reports = {};
+  std::vector<Parameter> options;  ///< in the order of the documentation
+  /// Sensors that it supports, mounted at the pose; empty means all sensors, mounted anywhere.
+  std::vector<std::string> sensors = range_and_bearing();
+  /// True if it initialises landmarks that one detection does not fix. It then needs known
+  /// association.
+  bool delays_initialisation = false;
+  /// Removes from the capabilities those that it does not have with this setup; empty: it has all.
+  std::function<void(const FilterSetup&, Capabilities&)> restrict_reports = {};
+  std::function<std::unique_ptr<SlamFilter>(const FilterSetup&)> make;
+};
+
+}  // namespace montecarta::filters
