@@ -22,7 +22,7 @@ concept Is = std::same_as<T, U>;
 template <class T, class Real>
 concept CarriesPoses = requires(const T t, MotionIncrement& motion, PoseGaussian<Real>& pose,
                                 const LandmarkGaussian<Real>& landmark,
-                                const RangeBearing<Real>& seen, const SensorNoise& R,
+                                const Measurement<Real>& seen, const SensorNoise& R,
                                 Evidence<Real>& evidence, const Belief& belief) {
   // Moves by one control step of `duration`.
   t.advance(motion, Control(), /*duration*/ 0.1, belief);
@@ -35,16 +35,15 @@ concept CarriesPoses = requires(const T t, MotionIncrement& motion, PoseGaussian
 /// The form in which `MapTransform` keeps a landmark.
 template <class MapTransform, class Real>
 using LandmarkStateOf = decltype(std::declval<const MapTransform&>().initialise(
-    BasicPose<Real>(), RangeBearing<Real>(), SensorNoise()));
+    BasicPose<Real>(), Measurement<Real>(), SensorNoise()));
 
 /// Keeps landmarks, like those two: each as a LandmarkGaussian or in a form that gaussian_of()
 /// converts to one for poses, weights and association. The form is a struct of Reals, and its
 /// default `{}`, a landmark that was never observed, must give a finite Gaussian.
 template <class T, class Real>
 concept KeepsLandmarks = requires(const T t, const BasicPose<Real>& pose,
-                                  LandmarkStateOf<T, Real>& landmark,
-                                  const RangeBearing<Real>& seen, const SensorNoise& R,
-                                  Evidence<Real>& evidence) {
+                                  LandmarkStateOf<T, Real>& landmark, const Measurement<Real>& seen,
+                                  const SensorNoise& R, Evidence<Real>& evidence) {
   // Initialises a landmark from a known pose.
   t.initialise(pose, seen, R);
   // Updates it with one detection from a known pose and returns the innovation before the update.
@@ -56,7 +55,7 @@ concept KeepsLandmarks = requires(const T t, const BasicPose<Real>& pose,
 template <class Real, class Landmark, class Mask>
 struct Match {
   Landmark landmark;  ///< a reference to the map, or a copy if particles matched different ones
-  RangeBearing<Real> seen;
+  Measurement<Real> seen;
   Mask mask;  ///< the particles that matched it
 };
 

@@ -51,7 +51,7 @@ class RefinedCloud {
   }
   void initialise(const FreshLandmark<Real>& fresh, const BasicPose<Real>& pose,
                   ParticleMaps<Real, Landmark>& maps) const {
-    fresh.put(map_transform_.initialise(pose, observation_of<Real>(fresh.detection), noise_),
+    fresh.put(map_transform_.initialise(pose, measurement_of<Real>(fresh.detection), noise_),
               maps.blocks_of(fresh.slot)[fresh.block]);
   }
   void begin_step() {

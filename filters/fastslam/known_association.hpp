@@ -33,7 +33,7 @@ class KnownAssociation {
         new_.push_back(detection);
       } else {
         slots_.push_back(static_cast<std::uint32_t>(slot));
-        seen_.push_back(observation_of<Real>(detection));
+        seen_.push_back(measurement_of<Real>(detection));
       }
     }
     maps.open(context, slots_, opened_);
@@ -98,7 +98,7 @@ class KnownAssociation {
 
   std::vector<std::int32_t> slot_of_;  ///< {identity}
   std::vector<std::uint32_t> slots_;
-  std::vector<RangeBearing<Real>> seen_;
+  std::vector<Measurement<Real>> seen_;
   std::vector<Detection> new_;
   std::vector<typename Maps::OpenSlot> opened_;
   std::vector<FreshLandmark<Real>> fresh_;

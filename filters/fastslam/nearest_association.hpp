@@ -40,7 +40,7 @@ class NearestAssociation {
                  const std::vector<PoseGaussian<Real>>& predicted) {
     scan_ = scan;
     seen_.clear();
-    for (const Detection& detection : scan) seen_.push_back(observation_of<Real>(detection));
+    for (const Detection& detection : scan) seen_.push_back(measurement_of<Real>(detection));
     slots_.resize(maps.slots());
     std::iota(slots_.begin(), slots_.end(), 0U);
     maps.open(context, slots_, opened_);
@@ -167,8 +167,8 @@ class NearestAssociation {
     const Symmetric2<Real> S = innovation_of(pose.covariance, s, {}, landmark.covariance, noise_).S;
     const Real determinant = S.determinant();
     for (std::size_t k = 0; k < seen_.size(); ++k) {
-      const RangeBearing<Real> v = residual(seen_[k], s);
-      const Real distance = select(owned, S.adjugate_form(v.range, v.bearing) / determinant, never);
+      const Measurement<Real> v = residual(seen_[k], s);
+      const Real distance = select(owned, S.adjugate_form(v.first, v.second) / determinant, never);
       if (!any(distance < Real(settings_.new_gate))) continue;
       const Real cost = distance + log(determinant);
       for (std::size_t lane = 0; lane < kLanes; ++lane) {
@@ -222,7 +222,7 @@ class NearestAssociation {
   std::vector<Real> counts_, resampled_counts_;
   InitialisationIdentities made_of_;
   Scan scan_;  ///< valid during update() only
-  std::vector<RangeBearing<Real>> seen_;
+  std::vector<Measurement<Real>> seen_;
   std::vector<std::uint32_t> slots_;
   std::vector<Pairing> pairings_;        ///< {particle, detection}
   std::vector<NearestSearch> searches_;  ///< {block, detection, lane}

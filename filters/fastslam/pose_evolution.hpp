@@ -21,7 +21,7 @@ namespace montecarta::filters {
 template <class Real>
 struct MatchedDetection {
   LandmarkGaussian<Real> landmark;
-  RangeBearing<Real> seen;
+  Measurement<Real> seen;
   Real matched;  ///< 1, or 0 if the particle matches no landmark
 };
 
@@ -47,9 +47,9 @@ class PoseFitness {
   Real likelihood(const BasicPose<Real>& pose, std::span<const MatchedDetection<Real>> scan) const {
     Real sum(0.0);
     for (const MatchedDetection<Real>& one : scan) {
-      const RangeBearing<Real> nu = residual(one.seen, line_of_sight(pose, one.landmark.mean));
+      const Measurement<Real> nu = residual(one.seen, line_of_sight(pose, one.landmark.mean));
       sum += one.matched *
-             (nu.range * nu.range / noise_.range + nu.bearing * nu.bearing / noise_.bearing);
+             (nu.first * nu.first / noise_.range + nu.second * nu.second / noise_.bearing);
     }
     return -0.5 * sum;
   }

@@ -64,7 +64,7 @@ class Mounted {
   template <class Real, class Mask>
   [[gnu::always_inline]] Innovation<Real> refine(PoseGaussian<Real>& pose,
                                                  const LandmarkGaussian<Real>& landmark,
-                                                 const RangeBearing<Real>& seen,
+                                                 const Measurement<Real>& seen,
                                                  const SensorNoise& noise, const Mask& matched,
                                                  Evidence<Real>& evidence) const {
     PoseGaussian<Real> sensor = mounting_.sensor(pose);
@@ -74,7 +74,7 @@ class Mounted {
   }
   template <class Real, class Mask>
   void refine_in_batch(PoseGaussian<Real>& pose, const BasicPose<Real>& predicted,
-                       const LandmarkGaussian<Real>& landmark, const RangeBearing<Real>& seen,
+                       const LandmarkGaussian<Real>& landmark, const Measurement<Real>& seen,
                        const SensorNoise& noise, const Mask& matched,
                        Evidence<Real>& evidence) const {
     PoseGaussian<Real> sensor = mounting_.sensor(pose);
@@ -85,13 +85,13 @@ class Mounted {
   template <class Real, class Mask, class Weighed>
   [[gnu::always_inline]] Innovation<Real> update(LandmarkGaussian<Real>& landmark,
                                                  const BasicPose<Real>& pose,
-                                                 const RangeBearing<Real>& seen,
+                                                 const Measurement<Real>& seen,
                                                  const SensorNoise& noise, const Mask& matched,
                                                  Weighed& evidence) const {
     return transform_.update(landmark, mounting_.sensor(pose), seen, noise, matched, evidence);
   }
   template <class Real>
-  LandmarkGaussian<Real> initialise(const BasicPose<Real>& pose, const RangeBearing<Real>& seen,
+  LandmarkGaussian<Real> initialise(const BasicPose<Real>& pose, const Measurement<Real>& seen,
                                     const SensorNoise& noise) const {
     return transform_.initialise(mounting_.sensor(pose), seen, noise);
   }

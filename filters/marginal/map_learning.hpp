@@ -174,7 +174,10 @@ class MapLearning {
     });
     const Pose centre =
         weighted_mean<Real>(context, weights, [&](std::size_t b) { return poses[b]; });
-    const Symmetric2<double> R = Linearised().initialise(centre, seen, noise_).covariance;
+    const Symmetric2<double> R =
+        Linearised()
+            .initialise(centre, Measurement<double>{seen.range, seen.bearing}, noise_)
+            .covariance;
     const Point x = solve(R, {1.0, 0.0}), y = solve(R, {0.0, 1.0});
     return {{mean[0], mean[1]}, {x.x, x.y, y.y}};
   }

@@ -19,7 +19,8 @@ void SharedAssociation::associate(Scan scan, const SharedMap& map, bool map_is_e
       const auto s = line_of_sight(predicted.mean, map[slot].mean);
       if (!is_usable(s)) continue;
       const auto covariance = map_is_exact ? Symmetric2<double>{} : map[slot].covariance();
-      const auto v = innovation_of(P, s, residual(observation_of(scan[k]), s), covariance, noise_);
+      const auto v =
+          innovation_of(P, s, residual(measurement_of<double>(scan[k]), s), covariance, noise_);
       const double distance = v.squared();
       searches_[k].offer(slot, distance, distance + std::log(v.S.determinant()),
                          association_.settings().gate);

@@ -149,7 +149,7 @@ class SharedLikelihood {
  private:
   struct Seen {
     LandmarkGaussian<Real> landmark;
-    RangeBearing<Real> observation;
+    Measurement<Real> observation;
   };
   SensorNoise noise_;
   MapMode mode_;

@@ -32,6 +32,14 @@ struct RangeBearing {
   Real bearing{};  ///< [rad] relative to the heading, in (-pi, pi]
 };
 
+/// The components that a sensor measures of a landmark, in the order of its detections, or the
+/// difference of two such measurements. `second` is 0 if the sensor has one component.
+template <class Real>
+struct Measurement {
+  Real first{};   ///< range, forward [m] or bearing [rad]
+  Real second{};  ///< bearing [rad] or left [m]
+};
+
 /// The predicted observation with its derivatives (EQUATIONS 2). Hf = [range_x range_y; bearing_x
 /// bearing_y] by the landmark; Hx = [-Hf, (0, -1)'] by the pose.
 template <class Real>
@@ -93,9 +101,14 @@ RangeBearing<Real> residual(const RangeBearing<Real>& detected,
   return {detected.range - predicted.range, wrap(Real(detected.bearing - predicted.bearing))};
 }
 
-/// The measured values of a range-bearing detection, the same in all lanes.
-template <class Real = double>
-RangeBearing<Real> observation_of(const Detection& detection) {
+/// The measured values of a range-bearing detection.
+inline RangeBearing<double> observation_of(const Detection& detection) {
+  return {detection[0], detection[1]};
+}
+
+/// The measured values of a detection of any sensor, the same in all lanes.
+template <class Real>
+Measurement<Real> measurement_of(const Detection& detection) {
   return {Real(detection[0]), Real(detection[1])};
 }
 

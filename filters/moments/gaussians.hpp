@@ -109,9 +109,9 @@ struct Symmetric2 {
 /// weight v v'; `weight` is the same for all lanes or differs between them.
 template <class Weight, class Real>
 [[gnu::always_inline]] inline Symmetric2<Real> outer(const Weight& weight,
-                                                     const RangeBearing<Real>& v) {
-  const Real range = weight * v.range, bearing = weight * v.bearing;
-  return {range * v.range, range * v.bearing, bearing * v.bearing};
+                                                     const Measurement<Real>& v) {
+  const Real first = weight * v.first, second = weight * v.second;
+  return {first * v.first, first * v.second, second * v.second};
 }
 /// a b' for two parallel columns, which is symmetric.
 template <class Real>

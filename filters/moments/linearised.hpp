@@ -27,10 +27,10 @@ template <class Real>
 
 /// Innovation, detected minus predicted, with the bearing wrapped.
 template <class Real>
-[[gnu::always_inline]] inline RangeBearing<Real> residual(const RangeBearing<Real>& detected,
-                                                          const LineOfSight<Real>& s) {
-  return {detected.range - s.predicted.range,
-          shorter_way(Real(detected.bearing - s.predicted.bearing))};
+[[gnu::always_inline]] inline Measurement<Real> residual(const Measurement<Real>& detected,
+                                                         const LineOfSight<Real>& s) {
+  return {detected.first - s.predicted.range,
+          shorter_way(Real(detected.second - s.predicted.bearing))};
 }
 
 /// The covariance of a landmark [m^2], rotated into the frame of the line of sight.
@@ -76,22 +76,22 @@ template <class Real>
 /// and the columns of P Hx' with Hx = [-ux -uy 0; uy/d -ux/d -1].
 template <class Real>
 struct Innovation {
-  RangeBearing<Real> value;
+  Measurement<Real> value;
   Symmetric2<Real> S;  ///< over (range, bearing)
   Column3<Real> range{}, bearing{};
 
   /// value' S^-1 value.
   Real squared() const { return squared(value); }
   /// The same for another innovation with this covariance.
-  Real squared(const RangeBearing<Real>& other) const {
-    return S.adjugate_form(other.range, other.bearing) / S.determinant();
+  Real squared(const Measurement<Real>& other) const {
+    return S.adjugate_form(other.first, other.second) / S.determinant();
   }
 };
 
 template <class Real>
 [[gnu::always_inline]] inline Innovation<Real> innovation_of(const Symmetric3<Real>& P,
                                                              const LineOfSight<Real>& s,
-                                                             const RangeBearing<Real>& value,
+                                                             const Measurement<Real>& value,
                                                              const Symmetric2<Real>& map_covariance,
                                                              const SensorNoise& noise) {
   const Turned<Real> map = turned(map_covariance, s);
@@ -131,8 +131,8 @@ struct Decorrelated {
     per_rr = determinant * inverse;
     per_bb = v.S.xx * v.S.xx * inverse;
     slope = v.S.xy * per_rr;
-    first = v.value.range;
-    second = v.value.bearing - slope * first;
+    first = v.value.first;
+    second = v.value.second - slope * first;
     density = {first * first * per_rr + second * second * per_bb,
                select(use, determinant, Real(1.0))};
   }
@@ -155,7 +155,7 @@ template <class Real, class Mask>
 /// model linearised on the line_of_sight `s`. `matched` is the mask of the lanes that matched it.
 template <class Real, class Mask>
 [[gnu::always_inline]] inline Innovation<Real> update_with(
-    PoseGaussian<Real>& pose, const LineOfSight<Real>& s, const RangeBearing<Real>& value,
+    PoseGaussian<Real>& pose, const LineOfSight<Real>& s, const Measurement<Real>& value,
     const Symmetric2<Real>& map_covariance, const SensorNoise& noise, const Mask& matched,
     Evidence<Real>& evidence) {
   const auto use = matched && is_usable(s);
@@ -195,7 +195,7 @@ struct Linearised {
   template <class Real, class Mask>
   [[gnu::always_inline]] Innovation<Real> refine(PoseGaussian<Real>& pose,
                                                  const LandmarkGaussian<Real>& landmark,
-                                                 const RangeBearing<Real>& seen,
+                                                 const Measurement<Real>& seen,
                                                  const SensorNoise& noise, const Mask& matched,
                                                  Evidence<Real>& evidence) const {
     const LineOfSight<Real> s = line_of_sight(pose.mean, landmark.mean);
@@ -206,15 +206,15 @@ struct Linearised {
   /// (EQUATIONS (6.4)).
   template <class Real, class Mask>
   void refine_in_batch(PoseGaussian<Real>& pose, const BasicPose<Real>& predicted,
-                       const LandmarkGaussian<Real>& landmark, const RangeBearing<Real>& seen,
+                       const LandmarkGaussian<Real>& landmark, const Measurement<Real>& seen,
                        const SensorNoise& noise, const Mask& matched,
                        Evidence<Real>& evidence) const {
     const LineOfSight<Real> s = line_of_sight(predicted, landmark.mean);
-    RangeBearing<Real> innovation = residual(seen, s);
+    Measurement<Real> innovation = residual(seen, s);
     const Column3<Real> moved{pose.mean.x - predicted.x, pose.mean.y - predicted.y,
                               pose.mean.heading - predicted.heading};
-    innovation.range += s.ux * moved.x + s.uy * moved.y;
-    innovation.bearing += (s.ux * moved.y - s.uy * moved.x) * s.per_range + moved.h;
+    innovation.first += s.ux * moved.x + s.uy * moved.y;
+    innovation.second += (s.ux * moved.y - s.uy * moved.x) * s.per_range + moved.h;
     update_with(pose, s, innovation, landmark.covariance, noise, matched, evidence);
   }
   /// Updates a landmark with one detection from an exactly known pose (EQUATIONS 4). In the frame
@@ -223,14 +223,14 @@ struct Linearised {
   template <class Real, class Mask, class Weighed>
   [[gnu::always_inline]] Innovation<Real> update(LandmarkGaussian<Real>& landmark,
                                                  const BasicPose<Real>& pose,
-                                                 const RangeBearing<Real>& seen,
+                                                 const Measurement<Real>& seen,
                                                  const SensorNoise& noise, const Mask& matched,
                                                  Weighed& evidence) const {
     const LineOfSight<Real> s = line_of_sight(pose, landmark.mean);
     const auto use = matched && is_usable(s);
     const Turned<Real> P = turned(landmark.covariance, s);
-    const RangeBearing<Real> innovation = residual(seen, s);
-    const Real along = innovation.range, across = innovation.bearing * s.predicted.range;
+    const Measurement<Real> innovation = residual(seen, s);
+    const Real along = innovation.first, across = innovation.second * s.predicted.range;
     const Turned<Real> R{noise.range, Real(0.0),
                          noise.bearing * s.predicted.range * s.predicted.range};
     const Symmetric2<Real> S{P.along + R.along, P.cross, P.across + R.across};
@@ -253,9 +253,10 @@ struct Linearised {
   }
   /// Initialises a landmark from an exactly known pose: g(x, z) and Gz R Gz' (EQUATIONS 4).
   template <class Real>
-  LandmarkGaussian<Real> initialise(const BasicPose<Real>& pose, const RangeBearing<Real>& seen,
+  LandmarkGaussian<Real> initialise(const BasicPose<Real>& pose, const Measurement<Real>& seen,
                                     const SensorNoise& noise) const {
-    const LinearisedPlace<Real> place = linearised_place(pose, seen);
+    const LinearisedPlace<Real> place =
+        linearised_place(pose, RangeBearing<Real>{seen.first, seen.second});
     const Real range = noise.range, bearing = noise.bearing;
     return {place.point,
             {place.x_range * place.x_range * range + place.x_bearing * place.x_bearing * bearing,

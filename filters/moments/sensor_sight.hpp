@@ -7,8 +7,8 @@
 #include "filters/moments/sigma_points.hpp"
 
 /// Predicted detections of a sensor of any kind, linearised at the pose of the sensor (EQUATIONS
-/// 2). The components of a detection, in order, have the names range and bearing in RangeBearing,
-/// SensorNoise and Innovation. A component that the sensor does not have has derivatives and
+/// 2). The components of a detection, in order, have the names range and bearing in SensorNoise and
+/// Innovation. A component that the sensor does not have has derivatives and
 /// innovation 0 and variance 1.
 namespace montecarta::filters {
 
@@ -18,25 +18,25 @@ inline constexpr bool kHasTwoComponents = Kind::kComponents.size() == 2;
 /// A landmark observed from the pose of the sensor.
 template <class Kind, class Real>
 struct SensorSight {
-  RangeBearing<Real> predicted;  ///< angles not wrapped: only for residual()
-  Column3<Real> first, second;   ///< rows of Hx; those by the landmark are the negatives of (x, y)
-  Real distance;                 ///< [m]
+  Measurement<Real> predicted;  ///< angles not wrapped: only for residual()
+  Column3<Real> first, second;  ///< rows of Hx; those by the landmark are the negatives of (x, y)
+  Real distance;                ///< [m]
 };
 
 /// The components that a sensor measures of a point in its own frame.
 template <class Real>
-[[gnu::always_inline]] inline RangeBearing<Real> observed(PositionSensor, const Real& forward,
-                                                          const Real& left) {
+[[gnu::always_inline]] inline Measurement<Real> observed(PositionSensor, const Real& forward,
+                                                         const Real& left) {
   return {forward, left};
 }
 template <class Real>
-[[gnu::always_inline]] inline RangeBearing<Real> observed(BearingSensor, const Real& forward,
-                                                          const Real& left) {
+[[gnu::always_inline]] inline Measurement<Real> observed(BearingSensor, const Real& forward,
+                                                         const Real& left) {
   return {atan2(left, forward), Real(0.0)};
 }
 template <class Real>
-[[gnu::always_inline]] inline RangeBearing<Real> observed(RangeSensor, const Real& forward,
-                                                          const Real& left) {
+[[gnu::always_inline]] inline Measurement<Real> observed(RangeSensor, const Real& forward,
+                                                         const Real& left) {
   return {length(forward, left), Real(0.0)};
 }
 
@@ -80,11 +80,11 @@ template <class Kind, class Real>
 
 /// a - b, with an angle wrapped.
 template <class Kind, class Real>
-[[gnu::always_inline]] inline RangeBearing<Real> difference(Kind, const RangeBearing<Real>& a,
-                                                            const RangeBearing<Real>& b) {
-  const Real first = a.range - b.range;
+[[gnu::always_inline]] inline Measurement<Real> difference(Kind, const Measurement<Real>& a,
+                                                           const Measurement<Real>& b) {
+  const Real first = a.first - b.first;
   if constexpr (kHasTwoComponents<Kind>) {
-    return {first, a.bearing - b.bearing};
+    return {first, a.second - b.second};
   } else if constexpr (wraps(Kind::kComponents[0])) {
     return {shorter_way(first), Real(0.0)};
   } else {
@@ -93,8 +93,8 @@ template <class Kind, class Real>
 }
 /// Innovation, detected minus predicted.
 template <class Kind, class Real>
-[[gnu::always_inline]] inline RangeBearing<Real> residual(const RangeBearing<Real>& detected,
-                                                          const SensorSight<Kind, Real>& s) {
+[[gnu::always_inline]] inline Measurement<Real> residual(const Measurement<Real>& detected,
+                                                         const SensorSight<Kind, Real>& s) {
   return difference(Kind(), detected, s.predicted);
 }
 
@@ -120,7 +120,7 @@ template <class Real>
 template <class Kind, class Real>
 [[gnu::always_inline]] inline Innovation<Real> innovation_of(const Symmetric3<Real>& P,
                                                              const SensorSight<Kind, Real>& s,
-                                                             const RangeBearing<Real>& value,
+                                                             const Measurement<Real>& value,
                                                              const Symmetric2<Real>& map,
                                                              const SensorNoise& noise) {
   const Column3<Real> first = times(P, s.first), second = times(P, s.second);
@@ -149,12 +149,12 @@ template <class Kind, class Real, class Use, class Mask, class Weighed>
 /// R Gz' (EQUATIONS 2, 4).
 template <class Kind, class Real>
 LandmarkGaussian<Real> placed_landmark(Kind, const BasicPose<Real>& sensor,
-                                       const RangeBearing<Real>& seen, const SensorNoise& noise) {
+                                       const Measurement<Real>& seen, const SensorNoise& noise) {
   expect(FixesLandmark<Kind>, "one detection of this sensor places no landmark");
   const Direction<Real> d = direction_of(sensor.heading);
   const LineOfSight<Real> axes{{}, d.cosine, d.sine, Real(1.0)};
   const Turned<Real> R{Real(noise.range), Real(0.0), Real(noise.bearing)};
-  return {BasicPoint<Real>{sensor.x, sensor.y} + in_map(seen.range, seen.bearing, axes),
+  return {BasicPoint<Real>{sensor.x, sensor.y} + in_map(seen.first, seen.second, axes),
           turned_back(R, axes)};
 }
 
@@ -178,7 +178,7 @@ struct LinearisedSensor : Linearised {
   template <class Real, class Mask>
   [[gnu::always_inline]] Innovation<Real> refine(PoseGaussian<Real>& pose,
                                                  const LandmarkGaussian<Real>& landmark,
-                                                 const RangeBearing<Real>& seen,
+                                                 const Measurement<Real>& seen,
                                                  const SensorNoise& noise, const Mask& matched,
                                                  Evidence<Real>& evidence) const {
     const auto s = sight(Kind(), pose.mean, landmark.mean);
@@ -186,21 +186,21 @@ struct LinearisedSensor : Linearised {
   }
   template <class Real, class Mask>
   void refine_in_batch(PoseGaussian<Real>& pose, const BasicPose<Real>& predicted,
-                       const LandmarkGaussian<Real>& landmark, const RangeBearing<Real>& seen,
+                       const LandmarkGaussian<Real>& landmark, const Measurement<Real>& seen,
                        const SensorNoise& noise, const Mask& matched,
                        Evidence<Real>& evidence) const {
     const auto s = sight(Kind(), predicted, landmark.mean);
     const Column3<Real> moved{pose.mean.x - predicted.x, pose.mean.y - predicted.y,
                               shorter_way(Real(pose.mean.heading - predicted.heading))};
-    RangeBearing<Real> value = residual(seen, s);
-    value.range -= dot(s.first, moved);
-    value.bearing -= dot(s.second, moved);
+    Measurement<Real> value = residual(seen, s);
+    value.first -= dot(s.first, moved);
+    value.second -= dot(s.second, moved);
     refine(pose, s, value, landmark, noise, matched, evidence);
   }
   template <class Real, class Mask, class Weighed>
   [[gnu::always_inline]] Innovation<Real> update(LandmarkGaussian<Real>& landmark,
                                                  const BasicPose<Real>& pose,
-                                                 const RangeBearing<Real>& seen,
+                                                 const Measurement<Real>& seen,
                                                  const SensorNoise& noise, const Mask& matched,
                                                  Weighed& evidence) const {
     const auto s = sight(Kind(), pose, landmark.mean);
@@ -216,7 +216,7 @@ struct LinearisedSensor : Linearised {
     return v;
   }
   template <class Real>
-  LandmarkGaussian<Real> initialise(const BasicPose<Real>& pose, const RangeBearing<Real>& seen,
+  LandmarkGaussian<Real> initialise(const BasicPose<Real>& pose, const Measurement<Real>& seen,
                                     const SensorNoise& noise) const {
     return placed_landmark(Kind(), pose, seen, noise);
   }
@@ -224,7 +224,7 @@ struct LinearisedSensor : Linearised {
  private:
   template <class Real, class Mask>
   [[gnu::always_inline]] static Innovation<Real> refine(
-      PoseGaussian<Real>& pose, const SensorSight<Kind, Real>& s, const RangeBearing<Real>& value,
+      PoseGaussian<Real>& pose, const SensorSight<Kind, Real>& s, const Measurement<Real>& value,
       const LandmarkGaussian<Real>& landmark, const SensorNoise& noise, const Mask& matched,
       Evidence<Real>& evidence) {
     Innovation<Real> v = innovation_of(pose.covariance, s, value, landmark.covariance, noise);
@@ -250,15 +250,15 @@ class SigmaSight {
 
   /// Adds to `moments` the images of the points along a column (forward, left, turn) of the square
   /// root of the pose; returns D.
-  [[gnu::always_inline]] RangeBearing<Real> add(const Column3<Real>& column,
-                                                ObservationMoments<Real>& moments) const {
+  [[gnu::always_inline]] Measurement<Real> add(const Column3<Real>& column,
+                                               ObservationMoments<Real>& moments) const {
     const double spread = rule_.spread;
-    const RangeBearing<Real> plus = from(spread * column.x, spread * column.y, spread * column.h);
-    const RangeBearing<Real> minus =
+    const Measurement<Real> plus = from(spread * column.x, spread * column.y, spread * column.h);
+    const Measurement<Real> minus =
         from(-spread * column.x, -spread * column.y, -spread * column.h);
     const ObservationPair<Real> pair{
-        {0.5 * (plus.range - minus.range), 0.5 * (plus.bearing - minus.bearing)},
-        {0.5 * (plus.range + minus.range), 0.5 * (plus.bearing + minus.bearing)}};
+        {0.5 * (plus.first - minus.first), 0.5 * (plus.second - minus.second)},
+        {0.5 * (plus.first + minus.first), 0.5 * (plus.second + minus.second)}};
     moments.add(pair, rule_);
     return pair.odd;
   }
@@ -272,10 +272,10 @@ class SigmaSight {
     return {axes_.cosine * c.x - axes_.sine * c.y, axes_.sine * c.x + axes_.cosine * c.y, c.h};
   }
   /// Innovation of `seen`, without cross-covariances.
-  Innovation<Real> innovation(const RangeBearing<Real>& seen,
+  Innovation<Real> innovation(const Measurement<Real>& seen,
                               const ObservationMoments<Real>& moments) const {
-    const RangeBearing<Real> mean{centre_.range + moments.shift.range,
-                                  centre_.bearing + moments.shift.bearing};
+    const Measurement<Real> mean{centre_.first + moments.shift.first,
+                                 centre_.second + moments.shift.second};
     return {difference(Kind(), seen, mean), moments.covariance + outer(rule_.shift, moments.shift)};
   }
   /// Mask of the lanes in which the landmark is not too near.
@@ -285,7 +285,7 @@ class SigmaSight {
 
  private:
   /// The observation from a pose displaced in its own frame, minus that of the centre.
-  RangeBearing<Real> from(const Real& forward, const Real& left, const Real& turn) const {
+  Measurement<Real> from(const Real& forward, const Real& left, const Real& turn) const {
     const Direction<Real> d = direction_of(turn);
     const Real x = way_.x - forward, y = way_.y - left;
     return difference(
@@ -295,7 +295,7 @@ class SigmaSight {
   Direction<Real> axes_;
   SigmaRule rule_;
   BasicPoint<Real> way_;  ///< vector to the landmark (forward, left)
-  RangeBearing<Real> centre_;
+  Measurement<Real> centre_;
 };
 
 /// `SigmaPoints` for a sensor of another kind; poses are those of the sensor.
@@ -306,16 +306,16 @@ struct SigmaPointsOf : SigmaPoints {
 
   template <class Real, class Mask>
   Innovation<Real> refine(PoseGaussian<Real>& pose, const LandmarkGaussian<Real>& landmark,
-                          const RangeBearing<Real>& seen, const SensorNoise& noise,
+                          const Measurement<Real>& seen, const SensorNoise& noise,
                           const Mask& matched, Evidence<Real>& evidence) const {
     const SigmaRule& rule = rules().pose;
     const SigmaSight<Kind, Real> s(pose.mean, landmark.mean, rule);
     ObservationMoments<Real> own{.covariance = {Real(noise.range), Real(0.0), Real(noise.bearing)}};
     Column3<Real> first{}, second{};
     for (const Column3<Real>& column : s.columns(pose.covariance)) {
-      const RangeBearing<Real> D = s.add(column, own);
-      first = first + Real(rule.antisymmetric * rule.spread * D.range) * column;
-      second = second + Real(rule.antisymmetric * rule.spread * D.bearing) * column;
+      const Measurement<Real> D = s.add(column, own);
+      first = first + Real(rule.antisymmetric * rule.spread * D.first) * column;
+      second = second + Real(rule.antisymmetric * rule.spread * D.second) * column;
     }
     ObservationMoments<Real> both = own;
     for (const Column3<Real>& column : s.columns(in_plane(landmark.covariance)))
@@ -331,7 +331,7 @@ struct SigmaPointsOf : SigmaPoints {
   }
   template <class Real, class Mask, class Weighed>
   Innovation<Real> update(LandmarkGaussian<Real>& landmark, const BasicPose<Real>& pose,
-                          const RangeBearing<Real>& seen, const SensorNoise& noise,
+                          const Measurement<Real>& seen, const SensorNoise& noise,
                           const Mask& matched, Weighed& evidence) const {
     const SigmaRule& rule = rules().landmark;
     const SigmaSight<Kind, Real> s(pose, landmark.mean, rule);
@@ -339,9 +339,9 @@ struct SigmaPointsOf : SigmaPoints {
         .covariance = {Real(noise.range), Real(0.0), Real(noise.bearing)}};
     Column3<Real> first{}, second{};
     for (const Column3<Real>& column : s.columns(in_plane(landmark.covariance))) {
-      const RangeBearing<Real> D = s.add(column, moments);  // a landmark moves opposite to the pose
-      first = first - Real(rule.antisymmetric * rule.spread * D.range) * column;
-      second = second - Real(rule.antisymmetric * rule.spread * D.bearing) * column;
+      const Measurement<Real> D = s.add(column, moments);  // a landmark moves opposite to the pose
+      first = first - Real(rule.antisymmetric * rule.spread * D.first) * column;
+      second = second - Real(rule.antisymmetric * rule.spread * D.second) * column;
     }
     Innovation<Real> v = s.innovation(seen, moments);
     v.range = s.in_map(first), v.bearing = s.in_map(second);
@@ -350,7 +350,7 @@ struct SigmaPointsOf : SigmaPoints {
     return v;
   }
   template <class Real>
-  LandmarkGaussian<Real> initialise(const BasicPose<Real>& pose, const RangeBearing<Real>& seen,
+  LandmarkGaussian<Real> initialise(const BasicPose<Real>& pose, const Measurement<Real>& seen,
                                     const SensorNoise& noise) const {
     return placed_landmark(Kind(), pose, seen, noise);
   }

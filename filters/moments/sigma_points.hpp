@@ -37,7 +37,7 @@ template <class Real>
 /// mean from the observation of the centre.
 template <class Real>
 struct ObservationPair {
-  RangeBearing<Real> odd, even;
+  Measurement<Real> odd, even;
 };
 
 /// The pair of observations of (range + along, across) and (range - along, -across), with bearings
@@ -57,27 +57,27 @@ template <class Real>
 /// Innovation, detected minus predicted, if the mean of the predicted observations deviates by
 /// `shift` from that of the centre.
 template <class Real>
-[[gnu::always_inline]] inline RangeBearing<Real> residual(const RangeBearing<Real>& detected,
-                                                          const LineOfSight<Real>& s,
-                                                          const RangeBearing<Real>& shift) {
-  return {detected.range - s.predicted.range - shift.range,
-          shorter_way(Real(detected.bearing - s.predicted.bearing - shift.bearing))};
+[[gnu::always_inline]] inline Measurement<Real> residual(const Measurement<Real>& detected,
+                                                         const LineOfSight<Real>& s,
+                                                         const Measurement<Real>& shift) {
+  return {detected.first - s.predicted.range - shift.first,
+          shorter_way(Real(detected.second - s.predicted.bearing - shift.second))};
 }
 
 /// Moments of a predicted observation (EQUATIONS (3.8)), summed column by column.
 template <class Real>
 struct ObservationMoments {
-  Symmetric2<Real> covariance;                     ///< without the term in e e'
-  RangeBearing<Real> shift{Real(0.0), Real(0.0)};  ///< e: mean minus observation of the centre
+  Symmetric2<Real> covariance;                    ///< without the term in e e'
+  Measurement<Real> shift{Real(0.0), Real(0.0)};  ///< e: mean minus observation of the centre
 
   [[gnu::always_inline]] void add(const ObservationPair<Real>& pair, const SigmaRule& rule) {
-    shift.range += rule.mean_weight * pair.even.range;
-    shift.bearing += rule.mean_weight * pair.even.bearing;
+    shift.first += rule.mean_weight * pair.even.first;
+    shift.second += rule.mean_weight * pair.even.second;
     covariance =
         covariance + (outer(rule.antisymmetric, pair.odd) + outer(rule.symmetric, pair.even));
   }
   /// The innovation of `seen`, with cross-covariances for the caller to fill in.
-  [[gnu::always_inline]] Innovation<Real> innovation(const RangeBearing<Real>& seen,
+  [[gnu::always_inline]] Innovation<Real> innovation(const Measurement<Real>& seen,
                                                      const LineOfSight<Real>& s,
                                                      const SigmaRule& rule) const {
     return {residual(seen, s, shift), covariance + outer(rule.shift, shift)};
@@ -107,7 +107,7 @@ struct SigmaObservation {
 template <class Real>
 [[gnu::always_inline]] inline SigmaObservation<Real> sigma_observation_of(
     const Symmetric3<Real>& covariance, const Symmetric2<Real>& map_covariance,
-    const LineOfSight<Real>& s, const RangeBearing<Real>& seen, const SensorNoise& noise,
+    const LineOfSight<Real>& s, const Measurement<Real>& seen, const SensorNoise& noise,
     const SigmaRule& rule, MapUncertainty map_uncertainty) {
   const Symmetric3<Real> P = turned(covariance, Direction<Real>{s.ux, -s.uy});
   const Turned<Real> map = turned(map_covariance, s);
@@ -118,7 +118,7 @@ template <class Real>
   // opposite to one of the landmark, and a turn of the heading opposite to one of the bearing.
   ObservationPair<Real> pair =
       observation_pair(range, rule.spread * q.along, rule.spread * q.across);
-  pair.odd = {-pair.odd.range, -pair.odd.bearing - rule.spread * q.heading};
+  pair.odd = {-pair.odd.first, -pair.odd.second - rule.spread * q.heading};
   const Real aa = P.xx - q.along * q.along;  // covariance of the columns after the first
   const Real ah = P.xh - q.along * q.heading, hh = P.hh - q.heading * q.heading;
   ObservationMoments<Real> own{.covariance = {noise.range + aa, ah, noise.bearing + hh}};
@@ -131,8 +131,8 @@ template <class Real>
   observation.whole = whole.innovation(seen, s, rule);
   observation.proposal =
       map_uncertainty == MapUncertainty::on ? observation.whole : own.innovation(seen, s, rule);
-  const Real r = rule.antisymmetric * rule.spread * pair.odd.range;
-  const Real b = rule.antisymmetric * rule.spread * pair.odd.bearing;
+  const Real r = rule.antisymmetric * rule.spread * pair.odd.first;
+  const Real b = rule.antisymmetric * rule.spread * pair.odd.second;
   observation.proposal.range = in_map(q.along * r - aa, q.across * r, q.heading * r - ah, s);
   observation.proposal.bearing = in_map(q.along * b - ah, q.across * b, q.heading * b - hh, s);
   return observation;
@@ -154,14 +154,14 @@ struct LandmarkGain {
 template <class Real>
 struct LandmarkObservation {
   AcrossColumn<Real> column;  ///< first column of the square root
-  RangeBearing<Real> slope;   ///< its image
+  Measurement<Real> slope;    ///< its image
   Real rest;                  ///< square of the second column, which lies along the line
   Symmetric2<Real> N;         ///< covariance not explained by any column of the landmark
   Innovation<Real> innovation;
 
   [[gnu::always_inline]] LandmarkObservation(const Symmetric2<Real>& covariance,
                                              const LineOfSight<Real>& s,
-                                             const RangeBearing<Real>& seen,
+                                             const Measurement<Real>& seen,
                                              const SensorNoise& noise, const SigmaRule& rule) {
     const Turned<Real> P = turned(covariance, s);
     column = across_column(P);
@@ -169,18 +169,18 @@ struct LandmarkObservation {
     const auto [odd, even] = observation_pair(s.predicted.range, rule.spread * column.along,
                                               rule.spread * column.across);
     const double per_spread = rule.antisymmetric * rule.spread, turning_angle = bend_weight(rule);
-    slope = {per_spread * odd.range, per_spread * odd.bearing};
+    slope = {per_spread * odd.first, per_spread * odd.second};
     N = outer(turning_angle, even);
     N.xx += noise.range, N.yy += noise.bearing;
     innovation = {
-        residual(seen, s, {rule.mean_weight * even.range, rule.mean_weight * even.bearing}),
+        residual(seen, s, {rule.mean_weight * even.first, rule.mean_weight * even.second}),
         Symmetric2<Real>{N.xx + rest, N.xy, N.yy} + outer(1.0, slope)};
   }
 
   /// K = P_xz S^-1; `inverse` is 1 / det S, or 0 in lanes without an update.
   [[gnu::always_inline]] LandmarkGain<Real> gain(const Real& inverse) const {
-    const Real a_r = column.along * slope.range + rest, a_b = column.along * slope.bearing;
-    const Real c_r = column.across * slope.range, c_b = column.across * slope.bearing;
+    const Real a_r = column.along * slope.first + rest, a_b = column.along * slope.second;
+    const Real c_r = column.across * slope.first, c_b = column.across * slope.second;
     const Symmetric2<Real>& S = innovation.S;
     return {(a_r * S.yy - a_b * S.xy) * inverse, (a_b * S.xx - a_r * S.xy) * inverse,
             (c_r * S.yy - c_b * S.xy) * inverse, (c_b * S.xx - c_r * S.xy) * inverse};
@@ -189,8 +189,8 @@ struct LandmarkObservation {
   /// [S - K A, K sqrt(N)] times its transpose, a sum of squares that cannot become negative
   /// (EQUATIONS 3).
   [[gnu::always_inline]] Turned<Real> after(const LandmarkGain<Real>& K) const {
-    const Real a = column.along - K.along_range * slope.range - K.along_bearing * slope.bearing;
-    const Real c = column.across - K.across_range * slope.range - K.across_bearing * slope.bearing;
+    const Real a = column.along - K.along_range * slope.first - K.along_bearing * slope.second;
+    const Real c = column.across - K.across_range * slope.first - K.across_bearing * slope.second;
     const Real rest_a = 1.0 - K.along_range, rest_c = -K.across_range;
     const Real a_r = K.along_range * N.xx + K.along_bearing * N.xy;
     const Real a_b = K.along_range * N.xy + K.along_bearing * N.yy;
@@ -226,7 +226,7 @@ class SigmaPoints {
   template <class Real, class Mask>
   [[gnu::always_inline]] Innovation<Real> refine(PoseGaussian<Real>& pose,
                                                  const LandmarkGaussian<Real>& landmark,
-                                                 const RangeBearing<Real>& seen,
+                                                 const Measurement<Real>& seen,
                                                  const SensorNoise& noise, const Mask& matched,
                                                  Evidence<Real>& evidence) const {
     const LineOfSight<Real> s = line_of_sight(pose.mean, landmark.mean);
@@ -246,7 +246,7 @@ class SigmaPoints {
   template <class Real, class Mask, class Weighed>
   [[gnu::always_inline]] Innovation<Real> update(LandmarkGaussian<Real>& landmark,
                                                  const BasicPose<Real>& pose,
-                                                 const RangeBearing<Real>& seen,
+                                                 const Measurement<Real>& seen,
                                                  const SensorNoise& noise, const Mask& matched,
                                                  Weighed& evidence) const {
     const LineOfSight<Real> s = line_of_sight(pose, landmark.mean);
@@ -257,11 +257,11 @@ class SigmaPoints {
     const Real determinant = v.S.determinant();
     const Real inverse = select(use, 1.0 / determinant, Real(0.0));
     const LandmarkGain<Real> K = observation.gain(inverse);
-    const Real along = K.along_range * v.value.range + K.along_bearing * v.value.bearing;
-    const Real across = K.across_range * v.value.range + K.across_bearing * v.value.bearing;
+    const Real along = K.along_range * v.value.first + K.along_bearing * v.value.second;
+    const Real across = K.across_range * v.value.first + K.across_bearing * v.value.second;
     landmark.mean = landmark.mean + in_map(along, across, s);
     landmark.covariance = select(use, turned_back(observation.after(K), s), landmark.covariance);
-    evidence.add(v.S.adjugate_form(v.value.range, v.value.bearing) * inverse,
+    evidence.add(v.S.adjugate_form(v.value.first, v.value.second) * inverse,
                  select(use, determinant, Real(1.0)), as_number<Real>(use),
                  as_number<Real>(matched));
     return v;
@@ -270,12 +270,12 @@ class SigmaPoints {
   /// through g(x, .) (EQUATIONS 8). The points of the range lie on the ray, those of the bearing at
   /// `ray_` to both sides of it.
   template <class Real>
-  LandmarkGaussian<Real> initialise(const BasicPose<Real>& pose, const RangeBearing<Real>& seen,
+  LandmarkGaussian<Real> initialise(const BasicPose<Real>& pose, const Measurement<Real>& seen,
                                     const SensorNoise& noise) const {
     const SigmaRule& rule = rules_.landmark;
-    const Direction<Real> d = direction_of(Real(pose.heading + seen.bearing));
-    const Real odd = seen.range * ray_.sine, even = seen.range * (ray_.cosine - 1.0);
-    const Real way = seen.range + rule.mean_weight * even;
+    const Direction<Real> d = direction_of(Real(pose.heading + seen.second));
+    const Real odd = seen.first * ray_.sine, even = seen.first * (ray_.cosine - 1.0);
+    const Real way = seen.first + rule.mean_weight * even;
     const Real along = noise.range + bend_weight(rule) * even * even;
     const Real across = rule.antisymmetric * odd * odd;
     return {{pose.x + way * d.cosine, pose.y + way * d.sine},

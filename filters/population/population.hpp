@@ -159,7 +159,7 @@ class CloudMoments {
 template <class Real>
 class MixtureInnovations {
   struct Sums {
-    RangeBearing<Real> value{Real(0.0), Real(0.0)};
+    Measurement<Real> value{Real(0.0), Real(0.0)};
     Symmetric2<Real> square{Real(0.0), Real(0.0), Real(0.0)};
   };
 
@@ -187,8 +187,8 @@ class MixtureInnovations {
                                     const Mask& matched) const {
       const Real share = weight * as_number<Real>(matched);
       Sums& sum = sums[k];
-      sum.value.range += share * v.value.range;
-      sum.value.bearing += share * v.value.bearing;
+      sum.value.first += share * v.value.first;
+      sum.value.second += share * v.value.second;
       sum.square = sum.square + (share * v.S + outer(share, v.value));
     }
   };
@@ -214,7 +214,7 @@ class MixtureInnovations {
     std::array<double, 5> total{};
     for (std::size_t at = k; at < sums_.size(); at += matched_.size()) {
       const auto& [value, square] = sums_[at];
-      const std::array<const Real*, 5> parts{&value.range, &value.bearing, &square.xx, &square.xy,
+      const std::array<const Real*, 5> parts{&value.first, &value.second, &square.xx, &square.xy,
                                              &square.yy};
       for (std::size_t f = 0; f < 5; ++f) {
         for (std::size_t lane = 0; lane < kLanesOf<Real>; ++lane) total[f] += get(*parts[f], lane);

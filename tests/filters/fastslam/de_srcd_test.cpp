@@ -213,7 +213,7 @@ TEST(PoseFitness, IsEquation32OrTheDensityOfThePose) {
           plain::innovation_at({pose.x, pose.y, pose.heading},
                                {.mean = to_vector(landmark.mean),
                                 .covariance = Eigen::Matrix2d{{P.xx, P.xy}, {P.xy, P.yy}}},
-                               {seen.range, seen.bearing, 0}, R);
+                               {seen.first, seen.second, 0}, R);
       printed += -0.5 * at->nu.dot(R.llt().solve(at->nu));
       density += plain::log_gaussian<2>(at->nu, at->Sf);
     }

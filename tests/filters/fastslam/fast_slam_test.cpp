@@ -96,7 +96,7 @@ LandmarkGaussian<Real> gaussian_of(const InTwoMetres<Real>& landmark) {
 struct LinearisedInTwoMetres {
   template <class Real, class Mask, class Weighed>
   Innovation<Real> update(InTwoMetres<Real>& landmark, const BasicPose<Real>& pose,
-                          const RangeBearing<Real>& seen, const SensorNoise& noise,
+                          const Measurement<Real>& seen, const SensorNoise& noise,
                           const Mask& matched, Weighed& evidence) const {
     LandmarkGaussian<Real> in_map = gaussian_of(landmark);
     Innovation<Real> v = Linearised().update(in_map, pose, seen, noise, matched, evidence);
@@ -104,7 +104,7 @@ struct LinearisedInTwoMetres {
     return v;
   }
   template <class Real>
-  InTwoMetres<Real> initialise(const BasicPose<Real>& pose, const RangeBearing<Real>& seen,
+  InTwoMetres<Real> initialise(const BasicPose<Real>& pose, const Measurement<Real>& seen,
                                const SensorNoise& noise) const {
     return in_two_metres(Linearised().initialise(pose, seen, noise));
   }

@@ -171,7 +171,7 @@ TEST(SensorFastSlam, SigmaPointsOfALinearModelAreTheKalmanFilter) {
                      {}, MapUncertainty::on);
   const PoseGaussian<double> pose{{1.0, 2.0, 0.7}, {1e-6, 3e-7, 2e-6, 1e-8, -2e-8, 1e-9}};
   const LandmarkGaussian<double> landmark{{30.0, 25.0}, {2e-5, 1e-5, 3e-5}};
-  const auto compare = [&]<class Kind>(Kind, const RangeBearing<double>& seen) {
+  const auto compare = [&]<class Kind>(Kind, const Measurement<double>& seen) {
     const SensorNoise noise{1e-5, kHasTwoComponents<Kind> ? 2e-5 : 1.0};
     Evidence<double> evidence, expected_evidence;
     PoseGaussian<double> refined = pose, expected = pose;
@@ -192,9 +192,9 @@ TEST(SensorFastSlam, SigmaPointsOfALinearModelAreTheKalmanFilter) {
     EXPECT_GT(v.S.xx, noise.range) << Kind::kName;
   };
   const auto exact = sight(PositionSensor(), pose.mean, landmark.mean).predicted;
-  compare(PositionSensor(), {exact.range + 0.003, exact.bearing - 0.004});
-  compare(BearingSensor(), {std::atan2(exact.bearing, exact.range) + 0.002, 0.0});
-  compare(RangeSensor(), {std::hypot(exact.range, exact.bearing) + 0.004, 0.0});
+  compare(PositionSensor(), {exact.first + 0.003, exact.second - 0.004});
+  compare(BearingSensor(), {std::atan2(exact.second, exact.first) + 0.002, 0.0});
+  compare(RangeSensor(), {std::hypot(exact.first, exact.second) + 0.004, 0.0});
 }
 
 }  // namespace

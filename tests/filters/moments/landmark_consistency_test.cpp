@@ -31,8 +31,8 @@ std::map<int, Averages> watch(const Transform& transform, const Belief& belief) 
     LandmarkGaussian<double> landmark;
     Evidence<double> evidence;
     for (int n = 1; n <= 64; ++n) {
-      const RangeBearing<double> seen{kTruth.x() + belief.sigma_range * draw.normal(),
-                                      belief.sigma_bearing * draw.normal()};
+      const Measurement<double> seen{kTruth.x() + belief.sigma_range * draw.normal(),
+                                     belief.sigma_bearing * draw.normal()};
       if (n == 1) {
         landmark = transform.initialise(Pose(), seen, noise);
       } else {

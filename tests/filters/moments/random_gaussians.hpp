@@ -31,11 +31,15 @@ inline Eigen::Matrix2d symmetric(const Symmetric2<double>& P) {
   return Eigen::Matrix2d{{P.xx, P.xy}, {P.xy, P.yy}};
 }
 
+inline Eigen::Vector2d to_vector(const Measurement<double>& seen) {
+  return {seen.first, seen.second};
+}
+
 /// A pose, a landmark 15 to 35 m away, and a detection of it.
 struct RandomObservation {
   PoseGaussian<double> pose;
   LandmarkGaussian<double> landmark;
-  RangeBearing<double> seen;
+  Measurement<double> seen;
   SensorNoise noise;
 
   /// `scale` = 1: uncertain enough to be bent; small: as good as linear.
