@@ -28,14 +28,8 @@ inline std::vector<Pairing> pair_by_identity(Scan scan, std::span<const std::int
   return pairings;
 }
 
-/// An innovation and its covariance.
-struct PredictedInnovation {
-  Vector<2> nu;
-  Matrix<2> S;
-};
-
 /// The best landmark for one detection (EQUATIONS 17). `predict(j, detection)` is the optional
-/// PredictedInnovation of landmark j.
+/// Innovation of landmark j.
 template <class Predict>
 Pairing nearest(const Detection& detection, std::size_t landmarks,
                 const AssociationSettings& settings, const Predict& predict) {
@@ -43,7 +37,7 @@ Pairing nearest(const Detection& detection, std::size_t landmarks,
   double least_distance = kInfinity;
   Pairing best{.cost = kInfinity};
   for (std::uint32_t j = 0; j < landmarks; ++j) {
-    const std::optional<PredictedInnovation> v = predict(j, detection);
+    const std::optional<Innovation> v = predict(j, detection);
     if (!v) continue;
     const double D2 = squared_distance(v->nu, v->S);
     const double ND = D2 + std::log(v->S.determinant());
@@ -90,7 +84,7 @@ inline std::vector<Pairing> pair(Scan scan, const Map& map, const Vector<3>& x, 
   if (setup.association.kind == Association::known)
     return pair_by_identity(scan, identities_of(map));
   const auto predict = [&](std::uint32_t j, const Detection& z) {
-    std::optional<PredictedInnovation> predicted;
+    std::optional<Innovation> predicted;
     if (const auto v = innovation_at(x, map[j], z, observation_noise(setup.belief)))
       predicted = {v->nu, v->Hx * P * v->Hx.transpose() + v->Sf};
     return predicted;

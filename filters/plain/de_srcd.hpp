@@ -115,10 +115,10 @@ class DeSrcd final : public Srcd {
   /// EQUATIONS (10.1), the logarithm of Ankishan (32): without prior and covariance of the map.
   double log_printed(const Vector<3>& pose, Particle& p, Scan scan) const {
     double sum = 0.0;
-    for_each_match(p, scan, [&](const Landmark& landmark, const Detection& z) {
+    for_each_match(p, scan, [&](const Landmark& landmark, std::size_t k) {
       const Point place{landmark.mean(0), landmark.mean(1)};
       const auto h = predicted_observation(as_pose(pose), place);
-      sum -= 0.5 * squared_distance(difference(z, filters::to_vector(h)), R_);
+      sum -= 0.5 * squared_distance(difference(scan[k], filters::to_vector(h)), R_);
     });
     return sum;
   }
@@ -127,8 +127,8 @@ class DeSrcd final : public Srcd {
   double log_posterior(const Vector<3>& pose, Particle& p, const Vector<3>& predicted,
                        const Matrix<3>& P, Scan scan) const {
     double sum = log_density(pose, predicted, P);
-    for_each_match(p, scan, [&](const Landmark& landmark, const Detection& z) {
-      sum += linearised_log_likelihood(pose, landmark, z).value_or(0.0);
+    for_each_match(p, scan, [&](const Landmark& landmark, std::size_t k) {
+      sum += log_density_of(linearised_innovation(pose, landmark, scan[k]));
     });
     return sum;
   }

@@ -72,8 +72,8 @@ class EkfSlam final : public SlamFilter {
 
  private:
   /// An innovation with all that the update needs.
-  struct Innovation {
-    PredictedInnovation value;
+  struct JointInnovation {
+    plain::Innovation value;
     Eigen::Matrix<double, Eigen::Dynamic, 2> cross;  ///< P H'
   };
 
@@ -90,7 +90,7 @@ class EkfSlam final : public SlamFilter {
   }
 
   /// nu = z - h, S = H P H' + R with H = [Hx 0 ... Hf ... 0]; nullopt if the landmark is too near.
-  std::optional<Innovation> innovation(std::size_t slot, const Detection& z) const {
+  std::optional<JointInnovation> innovation(std::size_t slot, const Detection& z) const {
     const Eigen::Index row = row_of(slot);
     const Landmark known{.mean = mean_.segment<2>(row), .covariance = P_.block<2, 2>(row, row)};
     const auto v = innovation_at(mean_.head<3>(), known, z, R_);
@@ -98,7 +98,7 @@ class EkfSlam final : public SlamFilter {
     const Eigen::Matrix<double, Eigen::Dynamic, 2> cross =
         P_.leftCols<3>() * v->Hx.transpose() + P_.middleCols<2>(row) * v->Hf.transpose();
     const Matrix<2> S = v->Hx * cross.topRows<3>() + v->Hf * cross.middleRows<2>(row) + R_;
-    return Innovation{{v->nu, S}, cross};
+    return JointInnovation{{v->nu, S}, cross};
   }
 
   /// m <- m + K nu, P <- P - K S K' (EQUATIONS (15.1)).

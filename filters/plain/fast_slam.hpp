@@ -46,7 +46,9 @@ class FastSlam : public SlamFilter {
     for (Particle& p : particles_) p.pairings = pair(scan, p.map, p.pose, p.covariance, setup_);
     const bool is_used = uses_anything();
     if (is_used) {
+      innovations_.assign(scan.size(), {});
       for (std::uint32_t i = 0; i < particles_.size(); ++i) use_scan(context, i, scan);
+      for (const MixtureInnovation& one : innovations_) one.add_to(report_);
       for (Particle& p : particles_) update_landmarks(p, scan);
       report_.log_likelihood = normalise(particles_);
       report_.ess = effective_size(particles_);
@@ -97,28 +99,35 @@ class FastSlam : public SlamFilter {
   virtual Landmark initialised(const Vector<3>& pose, const Detection& z) const {
     return new_landmark(pose, z, R_);
   }
-  /// log p(z | pose, landmark); nullopt if the landmark is too near.
-  virtual std::optional<double> log_likelihood(const Vector<3>& pose, const Landmark& landmark,
+  /// The innovation of a landmark observed from a pose which counts as exact; nullopt if the
+  /// landmark is too near.
+  virtual std::optional<Innovation> innovation(const Vector<3>& pose, const Landmark& landmark,
                                                const Detection& z) const {
-    return linearised_log_likelihood(pose, landmark, z);
+    return linearised_innovation(pose, landmark, z);
   }
-  std::optional<double> linearised_log_likelihood(const Vector<3>& pose, const Landmark& landmark,
+  std::optional<Innovation> linearised_innovation(const Vector<3>& pose, const Landmark& landmark,
                                                   const Detection& z) const {
     const auto v = innovation_at(pose, landmark, z, R_);
-    return v ? std::optional(log_gaussian<2>(v->nu, v->Sf)) : std::nullopt;
+    return v ? std::optional(Innovation{v->nu, v->Sf}) : std::nullopt;
+  }
+  /// The log-density of an innovation; 0 if there is none.
+  static double log_density_of(const std::optional<Innovation>& v) {
+    return v ? log_gaussian(*v) : 0.0;
   }
 
-  /// Calls visit(landmark, detection) for each match of a particle, in the order of the scan.
+  /// Calls visit(landmark, k) for each match of a particle with scan[k], in the order of the scan.
   template <class Visit>
   static void for_each_match(Particle& p, Scan scan, const Visit& visit) {
     for (std::size_t k = 0; k < scan.size(); ++k) {
-      if (p.pairings[k].kind == PairingKind::matched) visit(p.map[p.pairings[k].landmark], scan[k]);
+      if (p.pairings[k].kind == PairingKind::matched) visit(p.map[p.pairings[k].landmark], k);
     }
   }
-  /// The log-density of a detection, which is left out and counted if its landmark is too near.
-  double counted(const std::optional<double>& log_density) {
-    if (!log_density) ++report_.numerical_faults;
-    return log_density.value_or(0.0);
+  /// The log-density of the innovation of scan[k], which is added to the mixture for the NIS. A
+  /// detection is left out and counted if its landmark is too near.
+  double counted(std::size_t k, const std::optional<Innovation>& v) {
+    if (v) innovations_[k].add(weight_before_, *v);
+    if (!v) ++report_.numerical_faults;
+    return log_density_of(v);
   }
 
   FilterSetup setup_;
@@ -140,6 +149,7 @@ class FastSlam : public SlamFilter {
 
   void use_scan(const StepContext& context, std::uint32_t i, Scan scan) {
     Particle& p = particles_[i];
+    weight_before_ = std::exp(p.log_weight);
     weigh_and_draw(context, i, p, scan);
     for (const Pairing& one : p.pairings) {
       if (one.kind != PairingKind::matched) p.log_weight += log_unmatched(setup_);
@@ -147,7 +157,7 @@ class FastSlam : public SlamFilter {
   }
   void update_landmarks(Particle& p, Scan scan) const {
     for_each_match(
-        p, scan, [&](Landmark& landmark, const Detection& z) { update_map(p.pose, landmark, z); });
+        p, scan, [&](Landmark& landmark, std::size_t k) { update_map(p.pose, landmark, scan[k]); });
   }
   void initialise_landmarks(Particle& p, Scan scan) const {
     for (std::size_t k = 0; k < scan.size(); ++k) {
@@ -179,7 +189,9 @@ class FastSlam : public SlamFilter {
 
   Resampling scheme_;
   ScanReport report_;
-  std::vector<std::uint32_t> parents_;  ///< of the pending resampling
+  double weight_before_ = 0.0;                  ///< of the present particle, before the scan
+  std::vector<MixtureInnovation> innovations_;  ///< {detection}
+  std::vector<std::uint32_t> parents_;          ///< of the pending resampling
   bool is_after_scan_ = false;
 };
 

@@ -27,8 +27,8 @@ class FastSlam1 : public FastSlam {
   /// Adds sum_k log N(z_k - h(x, mu_k); Hf Sigma_k Hf' + R), the second half of EQUATIONS (5.1).
   void weigh_and_draw(const StepContext& /*context*/, std::uint32_t /*i*/, Particle& p,
                       Scan scan) override {
-    for_each_match(p, scan, [&](const Landmark& landmark, const Detection& z) {
-      p.log_weight += counted(log_likelihood(p.pose, landmark, z));
+    for_each_match(p, scan, [&](const Landmark& landmark, std::size_t k) {
+      p.log_weight += counted(k, innovation(p.pose, landmark, scan[k]));
     });
   }
 };

@@ -9,7 +9,7 @@ namespace montecarta::filters::plain {
 
 /// FastSLAM II (EQUATIONS 6; Montemerlo et al. 2003): the scan refines the Gaussian of the pose
 /// before the pose is drawn. Filters with other Gaussians replace move_gaussian(), update_with(),
-/// log_likelihood() and the two functions that keep landmarks.
+/// innovation() and the two functions that keep landmarks.
 class FastSlam2 : public FastSlam {
  public:
   explicit FastSlam2(const FilterSetup& setup)
@@ -38,10 +38,10 @@ class FastSlam2 : public FastSlam {
     move_linearised(p.pose, p.covariance, control, duration, belief_);
   }
 
-  /// Refines (p.pose, p.covariance) by one detection (EQUATIONS (6.1)) and returns log N(nu; S);
-  /// nullopt if the landmark is too near.
-  virtual std::optional<double> update_with(Particle& p, const Landmark& landmark,
-                                            const Detection& z) const {
+  /// Refines (p.pose, p.covariance) by one detection (EQUATIONS (6.1)) and returns its
+  /// innovation; nullopt if the landmark is too near.
+  virtual std::optional<Innovation> update_with(Particle& p, const Landmark& landmark,
+                                                const Detection& z) const {
     const auto v = innovation_at(p.pose, landmark, z, R_);
     if (!v) return std::nullopt;
     const Matrix<2> S = v->Hx * p.covariance * v->Hx.transpose() + v->Sf;
@@ -49,7 +49,7 @@ class FastSlam2 : public FastSlam {
     p.pose += K * v->nu;
     p.pose(2) = wrap(p.pose(2));
     p.covariance -= (K * S * K.transpose()).eval();
-    return log_gaussian<2>(v->nu, S);
+    return Innovation{v->nu, S};
   }
 
   void predict_particle(const StepContext& /*context*/, std::uint32_t /*i*/, Particle& p,
@@ -62,8 +62,8 @@ class FastSlam2 : public FastSlam {
   /// Refines by one detection after the other and returns the logarithm of EQUATIONS (6.2).
   double refine(Particle& p, Scan scan) {
     double log_evidence = 0.0;
-    for_each_match(p, scan, [&](const Landmark& landmark, const Detection& z) {
-      log_evidence += counted(update_with(p, landmark, z));
+    for_each_match(p, scan, [&](const Landmark& landmark, std::size_t k) {
+      log_evidence += counted(k, update_with(p, landmark, scan[k]));
     });
     p.refined_pose = p.pose;
     p.refined_covariance = p.covariance;
@@ -94,8 +94,8 @@ class FastSlam2 : public FastSlam {
                    double inflation, Scan scan) const {
     double log_weight = log_density(p.pose, predicted.pose, predicted.covariance) -
                         log_density(p.pose, centre, inflation * p.refined_covariance);
-    for_each_match(p, scan, [&](const Landmark& landmark, const Detection& z) {
-      log_weight += log_likelihood(p.pose, landmark, z).value_or(0.0);
+    for_each_match(p, scan, [&](const Landmark& landmark, std::size_t k) {
+      log_weight += log_density_of(innovation(p.pose, landmark, scan[k]));
     });
     return log_weight;
   }
@@ -107,8 +107,8 @@ class FastSlam2 : public FastSlam {
     Eigen::MatrixXd H(2 * scan.size(), 3), S = Eigen::MatrixXd::Zero(H.rows(), H.rows());
     Eigen::VectorXd nu(H.rows());
     Eigen::Index rows = 0;
-    for_each_match(predicted, scan, [&](const Landmark& landmark, const Detection& z) {
-      const auto v = innovation_at(predicted.pose, landmark, z, R_);
+    for_each_match(predicted, scan, [&](const Landmark& landmark, std::size_t k) {
+      const auto v = innovation_at(predicted.pose, landmark, scan[k], R_);
       if (!v) return;
       H.middleRows<2>(rows) = v->Hx;
       nu.segment<2>(rows) = v->nu;

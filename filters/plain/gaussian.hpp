@@ -53,6 +53,13 @@ double log_gaussian(const Vector<N>& v, Matrix<N> S) {
   return -0.5 * (white.squaredNorm() + log_det + size * std::log(kTwoPi));
 }
 
+/// The innovation of one detection of range and bearing, and its covariance.
+struct Innovation {
+  Vector<2> nu;
+  Matrix<2> S;
+};
+inline double log_gaussian(const Innovation& v) { return log_gaussian<2>(v.nu, v.S); }
+
 /// Lower triangular L with L L' = P. A pivot that is zero but for rounding gives a zero column
 /// (EQUATIONS, Notation).
 template <int N>

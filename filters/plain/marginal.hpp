@@ -134,25 +134,20 @@ class Marginal final : public SlamFilter {
 
   /// The kernels that poses are drawn from, with the weights lambda of EQUATIONS (12.2).
   std::vector<Kernel> chosen(std::vector<Kernel> kernels, Scan scan) {
-    std::vector<PredictedInnovation> sums(
-        scan.size(), PredictedInnovation{Vector<2>::Zero(), Matrix<2>::Zero()});
+    std::vector<MixtureInnovation> sums(scan.size());
     for (Kernel& kernel : kernels) {
       const double log_explained = explain(kernel, scan, std::exp(kernel.log_weight), sums);
       if (is_auxiliary_) kernel.log_weight += log_explained;
     }
     if (is_auxiliary_) normalise(kernels);
-    for_each_match([&](const Landmark&, std::size_t k) {
-      const auto& [mean, square] = sums[k];
-      report_.nis += squared_distance(mean, square - mean * mean.transpose());
-      report_.nis_dof += 2;
-    });
+    for (const MixtureInnovation& one : sums) one.add_to(report_);
     return kernels;
   }
 
   /// log p(z | kernel) at its mean. With kernel=posterior the detections also update the kernel
-  /// (EQUATIONS (6.1)), and this is (6.2). Adds `weight` times each innovation and its square.
+  /// (EQUATIONS (6.1)), and this is (6.2). Adds each innovation to its mixture with this weight.
   double explain(Kernel& kernel, Scan scan, double weight,
-                 std::vector<PredictedInnovation>& sums) const {
+                 std::vector<MixtureInnovation>& sums) const {
     Vector<3>& x = kernel.mean;
     Matrix<3>& P = kernel.covariance;
     double log_explained = 0.0;
@@ -160,8 +155,7 @@ class Marginal final : public SlamFilter {
       const auto v = innovation_at(x, landmark, scan[k], R_);
       if (!v) return;
       const Matrix<2> S = v->Hx * P * v->Hx.transpose() + v->Sf;
-      sums[k].nu += weight * v->nu;
-      sums[k].S += weight * (S + v->nu * v->nu.transpose());
+      sums[k].add(weight, {v->nu, S});
       log_explained += log_gaussian<2>(v->nu, is_posterior_ ? S : v->Sf);
       if (!is_posterior_) return;
       const Matrix<3, 2> K = gain<3, 2>(P * v->Hx.transpose(), S);

@@ -92,6 +92,29 @@ inline PoseMoments spread_of(const std::vector<Particle>& particles) {
       [](const Particle&) { return Matrix<3>::Zero(); });
 }
 
+/// The innovation of one detection for the mixture of all particles that use it: the weighted mean
+/// of theirs, with their spread added to its covariance. Weights are those before the scan.
+class MixtureInnovation {
+ public:
+  void add(double weight, const Innovation& v) {
+    weight_ += weight;
+    sum_ += weight * v.nu;
+    squares_ += weight * (v.S + v.nu * v.nu.transpose());
+  }
+  /// Adds the NIS of a detection that particles with at least half of the weight use.
+  void add_to(ScanReport& report) const {
+    if (weight_ < 0.5) return;
+    const Vector<2> mean = sum_ / weight_;
+    report.nis += squared_distance(mean, squares_ / weight_ - mean * mean.transpose());
+    report.nis_dof += 2;
+  }
+
+ private:
+  double weight_ = 0.0;
+  Vector<2> sum_ = Vector<2>::Zero();
+  Matrix<2> squares_ = Matrix<2>::Zero();
+};
+
 /// The estimate of one landmark, which is in the same slot of the map of each particle.
 inline LandmarkEstimate mixture_of_landmarks(const std::vector<Particle>& particles,
                                              std::size_t slot) {

@@ -35,9 +35,9 @@ class Srcd : public FastSlam2 {
                                              : move_by_points<3>(p, control, duration);
   }
 
-  /// Ankishan (15) to (18), and the weight (26) as EQUATIONS (8.1), (8.2).
-  std::optional<double> update_with(Particle& p, const Landmark& landmark,
-                                    const Detection& z) const override {
+  /// Ankishan (15) to (18), and the innovation of the weight (26) as EQUATIONS (8.1), (8.2).
+  std::optional<Innovation> update_with(Particle& p, const Landmark& landmark,
+                                        const Detection& z) const override {
     if (!parts_.pose) return FastSlam2::update_with(p, landmark, z);
     if (!is_far_enough(p.pose, landmark.mean)) return std::nullopt;
     const Differences<7, 2> whole = observation(p, landmark, factor_of(landmark));
@@ -51,15 +51,15 @@ class Srcd : public FastSlam2 {
     p.pose(2) = wrap(p.pose(2));
     keep(p, tria_of<3, 3, 4, 7>(S - K * Ax, K * image.A.rightCols<4>(), K * image.B));
     const Matrix<2> Sy = tria_of<2, 7, 7>(whole.A, whole.B);
-    return log_gaussian<2>(difference(z, whole.mean), Sy * Sy.transpose());
+    return Innovation{difference(z, whole.mean), Sy * Sy.transpose()};
   }
 
-  std::optional<double> log_likelihood(const Vector<3>& pose, const Landmark& landmark,
+  std::optional<Innovation> innovation(const Vector<3>& pose, const Landmark& landmark,
                                        const Detection& z) const override {
-    if (!parts_.map) return FastSlam2::log_likelihood(pose, landmark, z);
+    if (!parts_.map) return FastSlam2::innovation(pose, landmark, z);
     if (!is_far_enough(pose, landmark.mean)) return std::nullopt;
     const Observation seen = observation_from(pose, landmark);
-    return log_gaussian<2>(difference(z, seen.image.mean), seen.Sy * seen.Sy.transpose());
+    return Innovation{difference(z, seen.image.mean), seen.Sy * seen.Sy.transpose()};
   }
 
   /// Ankishan (20) to (23), as EQUATIONS (3.9).

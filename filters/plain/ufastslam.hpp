@@ -29,8 +29,8 @@ class UFastSlam : public FastSlam2 {
   }
 
   /// Kim (8) to (12). The weight always includes the covariance of the landmark (EQUATIONS (7.1)).
-  std::optional<double> update_with(Particle& p, const Landmark& landmark,
-                                    const Detection& z) const override {
+  std::optional<Innovation> update_with(Particle& p, const Landmark& landmark,
+                                        const Detection& z) const override {
     if (!is_far_enough(p.pose, landmark.mean)) return std::nullopt;
     const Image<7, 2> whole = observation(p, landmark, landmark.covariance);
     const Image<7, 2> image =
@@ -39,14 +39,14 @@ class UFastSlam : public FastSlam2 {
     p.pose += K * difference(z, image.mean);
     p.pose(2) = wrap(p.pose(2));
     p.covariance -= (K * image.covariance * K.transpose()).eval();
-    return log_gaussian<2>(difference(z, whole.mean), whole.covariance);
+    return Innovation{difference(z, whole.mean), whole.covariance};
   }
 
-  std::optional<double> log_likelihood(const Vector<3>& pose, const Landmark& landmark,
+  std::optional<Innovation> innovation(const Vector<3>& pose, const Landmark& landmark,
                                        const Detection& z) const override {
     if (!is_far_enough(pose, landmark.mean)) return std::nullopt;
     const Image<2, 2> image = observation_from(pose, landmark);
-    return log_gaussian<2>(difference(z, image.mean), image.covariance);
+    return Innovation{difference(z, image.mean), image.covariance};
   }
 
   /// The update (3.2) of EQUATIONS.

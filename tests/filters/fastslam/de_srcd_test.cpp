@@ -40,8 +40,8 @@ TEST_P(DeSrcd, EqualsThePlainFilter) {
     const auto lanes = make_production(GetParam(), settings);
     const auto single = make_de_srcd<double>(setup_of(GetParam(), settings));
     const auto plain = make_plain(GetParam(), settings);
-    expect_same_run(*lanes, *plain, world, 1e-9, NisReport::by_one);
-    expect_same_run(*single, *plain, world, 1e-9, NisReport::by_one);
+    expect_same_run(*lanes, *plain, world, 1e-9);
+    expect_same_run(*single, *plain, world, 1e-9);
     // Evolution asks which of two places is fitter. Where rounding decides that, two makes part
     // for good; it does so in none of these runs.
     const auto& evolution = dynamic_cast<const plain::DeSrcd&>(*plain).evolution();

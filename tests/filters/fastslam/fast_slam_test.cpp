@@ -30,7 +30,7 @@ TEST_P(FastSlams, EqualsThePlainFilter) {
   const SmallWorldSettings settings;
   const auto lanes = make_production(GetParam(), settings);
   const auto plain = make_plain(GetParam(), settings);
-  expect_same_run(*lanes, *plain, small_world(settings), 1e-8, NisReport::by_one);
+  expect_same_run(*lanes, *plain, small_world(settings), 1e-8);
 }
 
 TEST_P(FastSlams, EstimatesBetweenScansAsThePlainFilterDoes) {
