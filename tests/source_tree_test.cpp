@@ -105,6 +105,17 @@ std::vector<std::string> in_other_namespaces(const Tree& tree) {
   return found;
 }
 
+/// The files to which a document in Markdown links.
+std::vector<fs::path> targets_of(const Lines& document) {
+  static const std::regex link(R"(\]\(([^)#:\s]+)(#[^)]*)?\))");
+  std::vector<fs::path> targets;
+  for (const std::string& line : document) {
+    for (std::sregex_iterator at(line.begin(), line.end(), link), end; at != end; ++at)
+      targets.emplace_back((*at)[1].str());
+  }
+  return targets;
+}
+
 std::vector<std::string> too_wide(const Tree& tree, std::ptrdiff_t limit) {
   const auto is_wide = [&](const std::string& line) { return characters_in(line) > limit; };
   std::vector<std::string> found;
@@ -219,6 +230,23 @@ TEST(SourceTree, EquationsHaveNumbersOfTheirOwn) {
   EXPECT_THAT(numbers_given_twice(equations), IsEmpty());
   EXPECT_THAT(numbers_given_twice({"a \\tag{1.2}", "b \\tag{1.3}", "c \\tag{1.2}"}),
               ElementsAre("1.2"));
+}
+
+TEST(SourceTree, DocumentsLinkToFilesThatExist) {
+  const fs::path root = MONTECARTA_SOURCE_DIR;
+  std::size_t links = 0;
+  for (const char* path :
+       {"README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "engine/README.md", "filters/README.md",
+        "filters/EQUATIONS.md", "analysis/README.md", "experiments/README.md", "tests/README.md"}) {
+    const std::vector<fs::path> targets = targets_of(read_lines(root / path));
+    links += targets.size();
+    for (const fs::path& target : targets)
+      EXPECT_TRUE(fs::exists(root / fs::path(path).parent_path() / target))
+          << path << ": " << target;
+  }
+  EXPECT_GT(links, 100U);
+  EXPECT_THAT(targets_of({"a [b](c/d.hpp) [e](f.md#g) [h](https://i.org) [j](#k)"}),
+              ElementsAre("c/d.hpp", "f.md"));
 }
 
 TEST(SourceTree, TheTreeThatIsReadIsWhole) {
