@@ -7,7 +7,7 @@
 #include "analysis/metrics/metric.hpp"
 #include "analysis/metrics/study_analysis.hpp"
 #include "analysis/output/csv_file.hpp"
-#include "analysis/output/reading_order.hpp"
+#include "analysis/output/text_table.hpp"
 #include "analysis/page/page.hpp"
 #include "analysis/page/replay/replay.hpp"
 #include "analysis/tables/tables.hpp"

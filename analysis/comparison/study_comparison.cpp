@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/comparison/study_comparison.hpp"
 
-#include "analysis/metrics/paired_runs.hpp"
+#include "analysis/metrics/cell_analysis.hpp"
 #include "analysis/output/csv_file.hpp"
+#include "analysis/output/frame.hpp"
 #include "analysis/output/number_text.hpp"
 #include "analysis/statistics/bootstrap.hpp"
 #include "engine/errors.hpp"
@@ -84,6 +85,91 @@ void adjust(WinMatrix& matrix) {
   }
 }
 
+constexpr const char* kComparison = "comparison.csv";
+constexpr const char* kWins = "wins.csv";
+
+double count(std::size_t n) { return static_cast<double>(n); }
+
+Frame::Row numbers_of(const CellComparison& row) {
+  return {{"difference", "1", row.difference},
+          {"interval_lower", "1", row.interval.lower},
+          {"interval_upper", "1", row.interval.upper},
+          {"heavy_tail", "1", row.has_heavy_tail ? 1.0 : 0.0},
+          {"mean", "1", row.mean},
+          {"baseline_mean", "1", row.baseline_mean},
+          {"ratio", "1", row.ratio},
+          {"runs_paired", "1", count(row.pairs)},
+          {"runs_lost_by_failure", "1", count(row.without)},
+          {"runs_won_by_failure", "1", count(row.baseline_without)},
+          {"runs_failed_in_both", "1", count(row.neither)},
+          {"runs_unpaired", "1", count(row.unpaired)},
+          {"won", "1", count(row.wins.won)},
+          {"lost", "1", count(row.wins.lost)},
+          {"tied", "1", count(row.wins.tied)},
+          {"p_sign", "1", row.wins.p},
+          {"p_sign_holm", "1", row.wins.p_holm},
+          {"p_rank", "1", row.rank.p},
+          {"p_rank_holm", "1", row.rank_p_holm}};
+}
+
+Frame comparisons_frame(const Comparisons& comparisons) {
+  Frame frame;
+  for (const CellComparison& row : comparisons.rows) {
+    frame.add({{"metric", row.score->name},
+               {"units", row.score->units},
+               {"cell", row.cell},
+               {"baseline", comparisons.baseline},
+               {"verdict", row.verdict(comparisons.level)}},
+              numbers_of(row));
+  }
+  return frame;
+}
+
+void add_wins(const WinMatrix& matrix, Frame& frame) {
+  for (std::size_t r = 0; r < matrix.cells.size(); ++r) {
+    for (std::size_t c = 0; c < matrix.cells.size(); ++c) {
+      if (r == c) continue;
+      const Wins& wins = matrix.wins[r][c];
+      frame.add({{"metric", matrix.score->name},
+                 {"cell", matrix.cells[r]},
+                 {"beaten", matrix.cells[c]},
+                 {"share_won", "1", wins.share()},
+                 {"won", "1", count(wins.won)},
+                 {"lost", "1", count(wins.lost)},
+                 {"tied", "1", count(wins.tied)},
+                 {"p_sign", "1", wins.p},
+                 {"p_sign_holm", "1", wins.p_holm}});
+    }
+  }
+}
+
+/// Number of paired runs, and the reasons why others are not paired.
+std::string pairs_text(const CellComparison& row) {
+  std::string text = std::to_string(row.pairs);
+  const auto add = [&](std::size_t n, const char* words) {
+    if (n > 0) text.append(", ").append(std::to_string(n)).append(words);
+  };
+  add(row.without, " lost by failure");
+  add(row.baseline_without, " won by failure");
+  add(row.neither, " failed in both");
+  add(row.unpaired, " unpaired");
+  return text;
+}
+
+std::vector<TextTable::Entry> row_of(const CellComparison& row, double level) {
+  return {{"what", heading(row.score->name, row.score->units), Align::left},
+          {"cell", row.cell, Align::left},
+          {"verdict", row.verdict(level), Align::left},
+          {"difference", readable(row.difference)},
+          {level_text(level) + " interval",
+           row.has_heavy_tail ? "heavy tail" : interval_text(row.interval)},
+          {"ratio", readable(row.ratio)},
+          {"runs won", percent(row.wins.share())},
+          {"p sign", readable(row.wins.p_holm, 2)},
+          {"p rank", readable(row.rank_p_holm, 2)},
+          {"runs", pairs_text(row), Align::left}};
+}
+
 }  // namespace
 
 double Wins::share() const {
@@ -162,67 +248,6 @@ WinMatrix win_matrix(const StudyAnalysis& study, const Score& score) {
   return matrix;
 }
 
-namespace {
-
-constexpr const char* kComparison = "comparison.csv";
-constexpr const char* kWins = "wins.csv";
-
-double count(std::size_t n) { return static_cast<double>(n); }
-
-std::vector<NamedNumber> numbers_of(const CellComparison& row) {
-  return {{"difference", "1", row.difference},
-          {"interval_lower", "1", row.interval.lower},
-          {"interval_upper", "1", row.interval.upper},
-          {"heavy_tail", "1", row.has_heavy_tail ? 1.0 : 0.0},
-          {"mean", "1", row.mean},
-          {"baseline_mean", "1", row.baseline_mean},
-          {"ratio", "1", row.ratio},
-          {"runs_paired", "1", count(row.pairs)},
-          {"runs_lost_by_failure", "1", count(row.without)},
-          {"runs_won_by_failure", "1", count(row.baseline_without)},
-          {"runs_failed_in_both", "1", count(row.neither)},
-          {"runs_unpaired", "1", count(row.unpaired)},
-          {"won", "1", count(row.wins.won)},
-          {"lost", "1", count(row.wins.lost)},
-          {"tied", "1", count(row.wins.tied)},
-          {"p_sign", "1", row.wins.p},
-          {"p_sign_holm", "1", row.wins.p_holm},
-          {"p_rank", "1", row.rank.p},
-          {"p_rank_holm", "1", row.rank_p_holm}};
-}
-
-void write_comparisons(const Comparisons& comparisons, const std::filesystem::path& path) {
-  NamedRows file(path);
-  for (const CellComparison& row : comparisons.rows) {
-    file.row({{"metric", row.score->name},
-              {"units", row.score->units},
-              {"cell", row.cell},
-              {"baseline", comparisons.baseline},
-              {"verdict", row.verdict(comparisons.level)}},
-             numbers_of(row));
-  }
-  file.close();
-}
-
-void write_wins(const WinMatrix& matrix, NamedRows& file) {
-  for (std::size_t r = 0; r < matrix.cells.size(); ++r) {
-    for (std::size_t c = 0; c < matrix.cells.size(); ++c) {
-      if (r == c) continue;
-      const Wins& wins = matrix.wins[r][c];
-      file.row(
-          {{"metric", matrix.score->name}, {"cell", matrix.cells[r]}, {"beaten", matrix.cells[c]}},
-          {{"share_won", "1", wins.share()},
-           {"won", "1", count(wins.won)},
-           {"lost", "1", count(wins.lost)},
-           {"tied", "1", count(wins.tied)},
-           {"p_sign", "1", wins.p},
-           {"p_sign_holm", "1", wins.p_holm}});
-    }
-  }
-}
-
-}  // namespace
-
 StudyComparison compare_study(const StudyAnalysis& study, const std::string& baseline,
                               std::span<const Score* const> scores) {
   StudyComparison comparison{compare_cells(study, baseline, scores), {}};
@@ -238,42 +263,11 @@ std::vector<std::string> comparison_csv_names() { return {kComparison, kWins}; }
 void write_comparison_csv(const StudyComparison& comparison,
                           const std::filesystem::path& directory) {
   make_directory(directory);
-  write_comparisons(comparison.comparisons, directory / kComparison);
-  NamedRows wins(directory / kWins);
-  for (const WinMatrix& matrix : comparison.matrices) write_wins(matrix, wins);
-  wins.close();
+  write_csv(comparisons_frame(comparison.comparisons), directory / kComparison);
+  Frame wins;
+  for (const WinMatrix& matrix : comparison.matrices) add_wins(matrix, wins);
+  write_csv(wins, directory / kWins);
 }
-
-namespace {
-
-/// Number of paired runs, and the reasons why others are not paired.
-std::string pairs_text(const CellComparison& row) {
-  std::string text = std::to_string(row.pairs);
-  const auto add = [&](std::size_t n, const char* words) {
-    if (n > 0) text.append(", ").append(std::to_string(n)).append(words);
-  };
-  add(row.without, " lost by failure");
-  add(row.baseline_without, " won by failure");
-  add(row.neither, " failed in both");
-  add(row.unpaired, " unpaired");
-  return text;
-}
-
-std::vector<TextTable::Entry> row_of(const CellComparison& row, double level) {
-  return {{"what", heading(row.score->name, row.score->units), Align::left},
-          {"cell", row.cell, Align::left},
-          {"verdict", row.verdict(level), Align::left},
-          {"difference", readable(row.difference)},
-          {level_text(level) + " interval",
-           row.has_heavy_tail ? "heavy tail" : interval_text(row.interval)},
-          {"ratio", readable(row.ratio)},
-          {"runs won", percent(row.wins.share())},
-          {"p sign", readable(row.wins.p_holm, 2)},
-          {"p rank", readable(row.rank_p_holm, 2)},
-          {"runs", pairs_text(row), Align::left}};
-}
-
-}  // namespace
 
 TextTable comparison_table(const Comparisons& comparisons) {
   TextTable table{.keys = 2};

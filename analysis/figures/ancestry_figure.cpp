@@ -35,7 +35,6 @@ class BranchTracer {
   void step_back(std::span<const std::uint32_t> parents, double time) {
     for (auto& [particle, branch] : alive_) {
       particle = parents[particle];
-      expect_particle(particle);
       ++child_count_[particle];
     }
     for (const auto& [particle, branch] : alive_) {
@@ -46,13 +45,6 @@ class BranchTracer {
 
  private:
   using Line = std::pair<std::uint32_t, std::size_t>;  ///< (particle, branch)
-
-  void expect_particle(std::uint32_t particle) const {
-    if (particle < child_count_.size()) return;
-    throw RunError("ancestor: parent " + std::to_string(particle) + " of " +
-                   std::to_string(child_count_.size()) +
-                   " particles (the column is damaged): run the study again");
-  }
 
   void join(std::uint32_t particle, std::size_t branch, double time) {
     if (open_[particle] == kNoBranch) {
@@ -157,14 +149,15 @@ std::vector<DrawnTree> drawn_trees(const ResultFile& file, std::size_t run) {
 
 /// A row for every branch. A line that comes from the start has no height there but its own.
 FigureData data_of(const DrawnTree& cell) {
-  FigureData data{"ancestry_" + cell.label + ".csv",
-                  {"from [s]", "to [s]", "height", "height of its parent", "leaves"},
-                  {}};
+  FigureData data{"ancestry_" + cell.label + ".csv"};
   for (const AncestryTree::Branch& branch : cell.tree.branches) {
     const bool is_root = branch.parent == AncestryTree::kNone;
-    data.rows.push_back({branch.from, branch.to, branch.height,
-                         is_root ? branch.height : cell.tree.branches[branch.parent].height,
-                         static_cast<double>(branch.leaves)});
+    data.frame.add({{"from", "s", branch.from},
+                    {"to", "s", branch.to},
+                    {"height", "1", branch.height},
+                    {"height of its parent", "1",
+                     is_root ? branch.height : cell.tree.branches[branch.parent].height},
+                    {"leaves", "1", static_cast<double>(branch.leaves)}});
   }
   return data;
 }
@@ -184,27 +177,25 @@ std::string title_of_end(const DrawnTree& cell) {
 }
 
 /// The tree as one line with gaps: from its parent's height to its own, and on to its end.
-ChartMarks lines_of(const DrawnTree& cell, const FigureData& data) {
+ChartMarks lines_of(const DrawnTree& cell, const Frame& data) {
   constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
   ChartMarks lines;
   lines.cell = cell.label;
   lines.style = cell.style;
   lines.facts = {{"from [s]", {}}, {"to [s]", {}}, {"descendants at the end", {}}};
-  for (const auto& row : data.rows) {
-    const double from = row[0], to = row[1], height = row[2], parent = row[3], leaves = row[4];
+  for (std::size_t k = 0; k < data.rows(); ++k) {
+    const auto number = [&](std::size_t c) { return data.columns[c].numbers[k]; };
+    const double from = number(0), to = number(1), height = number(2), leaves = number(4);
     lines.x.insert(lines.x.end(), {from, from, to, kGap});
-    lines.y.insert(lines.y.end(), {parent, height, height, kGap});
-    for (int corner = 0; corner < 4; ++corner) {
-      const bool is_gap = corner == 3;
-      lines.facts[0].values.push_back(is_gap ? kGap : from);
-      lines.facts[1].values.push_back(is_gap ? kGap : to);
-      lines.facts[2].values.push_back(is_gap ? kGap : leaves);
-    }
+    lines.y.insert(lines.y.end(), {number(3), height, height, kGap});
+    lines.facts[0].values.insert(lines.facts[0].values.end(), {from, from, from, kGap});
+    lines.facts[1].values.insert(lines.facts[1].values.end(), {to, to, to, kGap});
+    lines.facts[2].values.insert(lines.facts[2].values.end(), {leaves, leaves, leaves, kGap});
   }
   return lines;
 }
 
-ChartPanel chart_panel(const DrawnTree& cell, const FigureData& data) {
+ChartPanel chart_panel(const DrawnTree& cell, const Frame& data) {
   const bool some = cell.tree.leaves < cell.tree.particles;
   ChartPanel panel{(some ? title_of(cell) : cell.label) + ", " + title_of_end(cell),
                    {false, 0.0, static_cast<double>(cell.tree.leaves + 1)},
@@ -234,7 +225,7 @@ Figure ancestry_figure(const ResultFile& file, std::optional<std::uint64_t> run)
   figure.chart.height = 150.0;
   for (const DrawnTree& cell : cells) {
     figure.data.push_back(data_of(cell));
-    figure.chart.panels.push_back(chart_panel(cell, figure.data.back()));
+    figure.chart.panels.push_back(chart_panel(cell, figure.data.back().frame));
     if (cell.tree.common_ancestor() == 0.0) continue;  // nothing to enlarge
     figure.chart.x_first = std::min(figure.chart.x_first, begin_of_resolved(cell));
   }

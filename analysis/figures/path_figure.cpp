@@ -55,25 +55,25 @@ std::vector<Ellipse> StoredMap::at(std::size_t scan) const {
 namespace {
 
 /// Bounds of the points (x, y) in columns `x` and `x` + 1 of data with a name that begins with
-/// `name`.
+/// `name`, as far as they lie within the limit.
 void include(const std::vector<FigureData>& all, const std::string& name, std::size_t x,
-             Bounds& bounds) {
+             Bounds& bounds, const Bounds& limit = {}) {
   for (const FigureData& data : all) {
     if (!data.name.starts_with(name)) continue;
-    for (const auto& row : data.rows) bounds.include(row[x], row[x + 1]);
+    for (std::size_t k = 0; k < data.frame.rows(); ++k) {
+      const double at_x = data.frame.columns[x].numbers[k];
+      const double at_y = data.frame.columns[x + 1].numbers[k];
+      if (limit.empty() || limit.contains(at_x, at_y)) bounds.include(at_x, at_y);
+    }
   }
 }
 
 /// Without the few fixes that lie far from all others.
-Bounds bounds_of_fixes(const FigureData& fixes) {
+Bounds bounds_of_fixes(const Frame& fixes) {
   constexpr double kWild = 0.01;
   Bounds bounds;
-  std::vector<double> x, y;
-  for (const auto& row : fixes.rows) {
-    x.push_back(row[1]);
-    y.push_back(row[2]);
-  }
-  if (x.empty()) return bounds;
+  if (fixes.rows() == 0) return bounds;
+  std::vector<double> x = fixes.columns[1].numbers, y = fixes.columns[2].numbers;
   std::ranges::sort(x);
   std::ranges::sort(y);
   const auto cut = static_cast<std::size_t>(kWild * static_cast<double>(x.size()));
@@ -122,16 +122,10 @@ Bounds path_bounds(const std::vector<FigureData>& all) {
 
 Bounds recorded_bounds(const std::vector<FigureData>& all, const FigureData& fixes,
                        const FigureData& landmarks) {
-  Bounds bounds = bounds_of_fixes(fixes);
+  Bounds bounds = bounds_of_fixes(fixes.frame);
   const Bounds limit = bounds.grown(0.25);
-  const bool limited = !bounds.empty();
-  for (const FigureData& data : all) {
-    const std::size_t x = data.name.starts_with("path_") ? 1 : 0;
-    if (x == 0 && !data.name.starts_with("map_")) continue;
-    for (const auto& row : data.rows) {
-      if (!limited || limit.contains(row[x], row[x + 1])) bounds.include(row[x], row[x + 1]);
-    }
-  }
+  include(all, "path_", 1, bounds, limit);
+  include(all, "map_", 0, bounds, limit);
   include({landmarks}, "landmarks.csv", 0, bounds);
   return bounds.widened();
 }
@@ -154,21 +148,11 @@ constexpr std::size_t kMostPoints = 500;
 constexpr std::size_t kMostRecorded = 1500;  // a recorded drive is kilometres long
 constexpr std::size_t kMostFixes = 600;
 
-const std::vector<std::string> kEllipseHeadings = {"x [m]", "y [m]", "major diameter [m]",
-                                                   "minor diameter [m]", "angle [deg]"};
+const Frame kNoEllipses{
+    {{"x", "m"}, {"y", "m"}, {"major diameter", "m"}, {"minor diameter", "m"}, {"angle", "deg"}}};
+const Frame kNoFixes{{{"time", "s"}, {"x", "m"}, {"y", "m"}}};
 
-std::vector<double> ellipse_row(const Ellipse& e) { return {e.x, e.y, e.major, e.minor, e.angle}; }
-
-FigureData recorded_path(const ResultFile& file, const StoredCell& cell, const RunRows& run) {
-  FigureData data{"path_" + cell.label + ".csv", {"time [s]", "x [m]", "y [m]"}, {}};
-  const auto times = drive_of_run(file, run.run).scan_times;
-  const auto& mean = estimate_of(run).mean;
-  const std::size_t stride = 1 + times.size() / kMostRecorded;
-  for (std::size_t s = 0; s < times.size(); s += stride) {
-    data.rows.push_back({times[s], mean[3 * s], mean[3 * s + 1]});
-  }
-  return data;
-}
+void add(const Ellipse& e, Frame& frame) { frame.push({e.x, e.y, e.major, e.minor, e.angle}); }
 
 }  // namespace
 
@@ -188,58 +172,62 @@ std::optional<std::size_t> chosen_run(const ResultFile& file, std::optional<std:
 }
 
 FigureData path_data(const ResultFile& file, const StoredCell& cell, const RunRows& run) {
-  if (run.truth.empty()) return recorded_path(file, cell, run);
-  FigureData data{"path_" + cell.label + ".csv",
-                  {"time [s]", "true x [m]", "true y [m]", "x [m]", "y [m]"},
-                  {}};
-  const auto& times = file.scan_times();
+  FigureData data{"path_" + cell.label + ".csv", {{{"time", "s"}, {"x", "m"}, {"y", "m"}}}};
+  const bool has_truth = !run.truth.empty();
+  auto& columns = data.frame.columns;
+  if (has_truth) columns.insert(columns.begin() + 1, {{"true x", "m"}, {"true y", "m"}});
+  const auto times = drive_of_run(file, run.run).scan_times;
   const auto& mean = estimate_of(run).mean;
-  const std::size_t stride = 1 + times.size() / kMostPoints;
+  const std::size_t stride = 1 + times.size() / (has_truth ? kMostPoints : kMostRecorded);
   for (std::size_t s = 0; s < times.size(); s += stride) {
-    data.rows.push_back(
-        {times[s], run.truth[3 * s], run.truth[3 * s + 1], mean[3 * s], mean[3 * s + 1]});
+    const double x = mean[3 * s], y = mean[3 * s + 1];
+    if (has_truth) {
+      data.frame.push({times[s], run.truth[3 * s], run.truth[3 * s + 1], x, y});
+    } else {
+      data.frame.push({times[s], x, y});
+    }
   }
   return data;
 }
 
 FigureData pose_ellipses(const StoredCell& cell, const RunRows& run) {
-  FigureData data{"pose_ellipses_" + cell.label + ".csv", kEllipseHeadings, {}};
+  FigureData data{"pose_ellipses_" + cell.label + ".csv", kNoEllipses};
   const MomentRows& moments = estimate_of(run);
   const std::size_t scans = moments.covariance.size() / 9;
   const std::size_t ellipses = std::min(kPoseEllipses, scans);
   for (std::size_t k = 1; k <= ellipses; ++k) {
     const std::size_t s = k * scans / ellipses - 1;
     const double* P = moments.covariance.data() + 9 * s;
-    data.rows.push_back(ellipse_row(
-        two_sigma_ellipse(moments.mean[3 * s], moments.mean[3 * s + 1], P[0], P[3], P[4])));
+    add(two_sigma_ellipse(moments.mean[3 * s], moments.mean[3 * s + 1], P[0], P[3], P[4]),
+        data.frame);
   }
   return data;
 }
 
 FigureData map_data(const ResultFile& file, const StoredCell& cell, std::size_t run_index) {
-  FigureData data{"map_" + cell.label + ".csv", kEllipseHeadings, {}};
+  FigureData data{"map_" + cell.label + ".csv", kNoEllipses};
   if (!cell.has("map_seen") && !cell.has("final_map_seen")) return data;
   const StoredMap map(file, cell, run_index);
   if (map.scans() == 0) return data;
-  for (const Ellipse& ellipse : map.at(map.scans() - 1)) data.rows.push_back(ellipse_row(ellipse));
+  for (const Ellipse& ellipse : map.at(map.scans() - 1)) add(ellipse, data.frame);
   return data;
 }
 
 FigureData fix_data(const ResultFile& file, std::size_t run_index) {
   const auto references = drive_of_run(file, file.runs()[run_index]).references;
-  if (references.empty()) return {"fixes.csv", {"time [s]", "x [m]", "y [m]"}, {}};
+  if (references.empty()) return {"fixes.csv", kNoFixes};
   const ReferencePath& path = references.front();
-  FigureData data{"fixes_" + path.name + ".csv", {"time [s]", "x [m]", "y [m]"}, {}};
+  FigureData data{"fixes_" + path.name + ".csv", kNoFixes};
   const std::size_t stride = 1 + path.time.size() / kMostFixes;
   for (std::size_t f = 0; f < path.time.size(); f += stride) {
-    data.rows.push_back({path.time[f], path.position[f].x(), path.position[f].y()});
+    data.frame.push({path.time[f], path.position[f].x(), path.position[f].y()});
   }
   return data;
 }
 
 FigureData landmark_data(const ResultFile& file, std::size_t run_index) {
-  FigureData data{"landmarks.csv", {"x [m]", "y [m]"}, {}};
-  for (const auto& at : file.landmarks_of(run_index)) data.rows.push_back({at.x(), at.y()});
+  FigureData data{"landmarks.csv", {{{"x", "m"}, {"y", "m"}}}};
+  for (const auto& at : file.landmarks_of(run_index)) data.frame.push({at.x(), at.y()});
   return data;
 }
 
@@ -247,10 +235,8 @@ namespace {
 
 using Shape = ChartMarks::Shape;
 
-std::vector<double> column(const FigureData& data, std::size_t which) {
-  std::vector<double> values;
-  for (const auto& row : data.rows) values.push_back(row[which]);
-  return values;
+const std::vector<double>& column(const FigureData& data, std::size_t which) {
+  return data.frame.columns[which].numbers;
 }
 
 /// Marks at columns `x` and `x` + 1.
@@ -270,13 +256,13 @@ ChartMarks ellipses_of(const FigureData& data, const std::string& name, std::siz
   marks.width = column(data, 2);
   marks.height = column(data, 3);
   marks.angle = column(data, 4);
-  marks.facts = {{data.headings[2], marks.width}, {data.headings[3], marks.height}};
+  marks.facts = {{"major diameter [m]", marks.width}, {"minor diameter [m]", marks.height}};
   return marks;
 }
 
 /// (time, true x, true y, x, y); (time, x, y) without a known truth.
 void add_paths(const DrawnPath& cell, ChartPanel& panel) {
-  const bool has_truth = cell.path.headings.size() == 5;
+  const bool has_truth = cell.path.frame.columns.size() == 5;
   const std::size_t x = has_truth ? 3 : 1;
   ChartMarks estimate = marks_at(cell.path, x, "estimate", Shape::line, cell.style);
   estimate.facts = {{"time [s]", column(cell.path, 0)}};
@@ -285,8 +271,8 @@ void add_paths(const DrawnPath& cell, ChartPanel& panel) {
     truth.thickness = 3.0;
     truth.facts = estimate.facts;
     std::vector<double> errors;
-    for (const auto& row : cell.path.rows) {
-      errors.push_back(length(row[3] - row[1], row[4] - row[2]));
+    for (std::size_t k = 0; k < truth.x.size(); ++k) {
+      errors.push_back(length(estimate.x[k] - truth.x[k], estimate.y[k] - truth.y[k]));
     }
     estimate.facts.push_back({"position error [m]", errors});
     panel.marks.push_back(std::move(truth));
@@ -297,19 +283,19 @@ void add_paths(const DrawnPath& cell, ChartPanel& panel) {
 ChartPanel panel_of(const DrawnPath& cell, const FigureData& landmarks, const FigureData& fixes,
                     const Bounds& bounds) {
   ChartPanel panel{cell.label, {false, bounds.low, bounds.high}, {}, {}, {}, cell.label};
-  if (!fixes.rows.empty()) {
+  if (fixes.frame.rows() > 0) {
     panel.marks.push_back(marks_at(fixes, 1, "fix", Shape::points, kTruthStyle));
     panel.marks.back().thickness = 3.0;
     panel.marks.back().facts = {{"time [s]", column(fixes, 0)}};
   }
   add_paths(cell, panel);
-  if (!cell.map.rows.empty()) {
+  if (cell.map.frame.rows() > 0) {
     panel.marks.push_back(ellipses_of(cell.map, "landmark of the map", cell.style));
   }
-  if (!cell.poses.rows.empty()) {
+  if (cell.poses.frame.rows() > 0) {
     panel.marks.push_back(ellipses_of(cell.poses, "2 sigma of the pose", cell.style));
   }
-  if (!landmarks.rows.empty()) {
+  if (landmarks.frame.rows() > 0) {
     panel.marks.push_back(marks_at(landmarks, 0, "true landmark", Shape::crosses, kReferenceStyle));
   }
   for (ChartMarks& marks : panel.marks) {

@@ -2,14 +2,9 @@
 // Probability integral transforms of errors (with matched noise) and of the NEES, over runs.
 #include "analysis/metrics/calibration.hpp"
 
-#include "analysis/metrics/cell_panels.hpp"
-#include "analysis/metrics/cell_range.hpp"
+#include "analysis/metrics/cell_report.hpp"
 #include "analysis/metrics/measured_run.hpp"
-#include "analysis/metrics/metric.hpp"
 #include "analysis/metrics/nees.hpp"
-#include "analysis/metrics/study_analysis.hpp"
-#include "analysis/output/csv_file.hpp"
-#include "analysis/output/number_text.hpp"
 #include "analysis/statistics/spread.hpp"
 #include "engine/numbers/angle.hpp"
 
@@ -102,42 +97,6 @@ double evenly(std::uint64_t run) {
   return golden - std::floor(golden);
 }
 
-}  // namespace
-
-RunPits pits_of(const RunRows& rows, std::size_t particles, std::uint64_t run,
-                std::span<const Eigen::Vector2d> landmarks) {
-  RunPits pits;
-  if (rows.truth.empty()) return pits;
-  const MomentRows& estimate = estimate_of(rows);
-  const auto scans = calibration_scans(rows.truth.size() / 3);
-  pits.has_pose = !estimate.covariance.empty();
-  pits.has_rank = !rows.cloud.log_weight.empty();
-  pits.has_landmark = rows.final_map && !landmarks.empty();
-  for (std::size_t m = 0; m < kQuarters; ++m) {
-    if (pits.has_pose) {
-      const bool drawn = particles > 0 && is_drawn(rows, scans[m]);
-      pits.pose[m] = drawn ? drawn_pits(rows, draws_at(rows, particles, scans[m]), scans[m])
-                           : gaussian_pits(rows.truth, estimate, scans[m]);
-    }
-    if (pits.has_rank) pits.rank[m] = rank_pits(rows.truth, rows.cloud, scans[m], m, evenly(run));
-  }
-  if (pits.has_landmark) pits.landmark = landmark_pits(*rows.final_map, run, landmarks);
-  return pits;
-}
-
-std::array<double, kQuarters> nees_pits(std::span<const double> nees, std::size_t dimension) {
-  const boost::math::chi_squared law(static_cast<double>(dimension));
-  std::array<double, kQuarters> pits;
-  const auto scans = calibration_scans(nees.size());
-  for (std::size_t m = 0; m < kQuarters; ++m) {
-    const double value = nees[scans[m]];
-    pits[m] = std::isfinite(value) ? boost::math::cdf(law, value) : kNaN;
-  }
-  return pits;
-}
-
-namespace {
-
 constexpr std::array kComponents = {"x", "y", "heading"};
 constexpr const char* kNees = "NEES";
 
@@ -176,38 +135,6 @@ std::size_t most_tests(const RunPits& run) {
   return run.nees.size() + (has_components ? of_components : 0);
 }
 
-}  // namespace
-
-std::vector<JudgedPits> CalibrationSums::result(std::span<const double> times, double level) const {
-  if (runs_.empty()) return {};
-  const RunPits& first = runs_.front();
-  PitJudge judge(runs_, most_tests(first), level);
-  const auto scans = calibration_scans(times.size());
-  const auto add_pose = [&](const char* by, auto RunPits::*pits) {
-    for (std::size_t m = 0; m < kQuarters; ++m) {
-      for (std::size_t c = 0; c < kComponents.size(); ++c) {
-        judge.add({kComponents[c], by, times[scans[m]], 0, {}}, PitOf::error,
-                  [=](const RunPits& run) { return (run.*pits)[m][c]; });
-      }
-    }
-  };
-  if (first.has_pose) add_pose("Gaussian", &RunPits::pose);
-  if (first.has_rank) add_pose("particles", &RunPits::rank);
-  if (first.has_landmark) {
-    for (std::size_t c = 0; c < first.landmark.size(); ++c) {
-      judge.add({std::string("landmark ") + kComponents[c], "Gaussian", times.back(), 0, {}},
-                PitOf::error, [=](const RunPits& run) { return run.landmark[c]; });
-    }
-  }
-  for (std::size_t m = 0; m < (first.has_nees ? kQuarters : 0); ++m) {
-    judge.add({kNees, "Gaussian", times[scans[m]], 0, {}}, PitOf::squared_error,
-              [=](const RunPits& run) { return run.nees[m]; });
-  }
-  return std::move(judge.found);
-}
-
-namespace {
-
 class CalibrationOverRuns final : public MergedSums<CalibrationOverRuns> {
  public:
   explicit CalibrationOverRuns(const RunCriteria& criteria) : criteria_(&criteria) {}
@@ -237,10 +164,6 @@ std::vector<const JudgedPits*> tests_of(const CellAnalysis& cell, const Chosen& 
 bool has_test(const StudyAnalysis& study, const Chosen& chosen) {
   return std::ranges::any_of(
       study.cells, [&](const CellAnalysis& cell) { return !tests_of(cell, chosen).empty(); });
-}
-
-bool has_calibration(const StudyAnalysis& study) {
-  return has_test(study, [](const JudgedPits&) { return true; });
 }
 
 bool is_of_error(const JudgedPits& one) { return one.quantity != kNees; }
@@ -315,22 +238,26 @@ void add_calibration_notes(const StudyAnalysis& study, Section& section) {
 }
 
 /// One row for each test. The p-value is that of the test alone.
-void write_calibration(const StudyAnalysis& study, const std::filesystem::path& path) {
-  CsvFile file(path);
-  file.row(std::vector<std::string>{"cell", "quantity", "by", "time [s]", "verdict", "values",
-                                    "undefined", "mean", "variance", "largest_deviation", "p_value",
-                                    "band_joint"});
+Frame calibration_frame(const StudyAnalysis& study) {
+  Frame frame;
   for (const CellAnalysis& cell : study.cells) {
     for (const JudgedPits& one : cell.get<Calibrations>()) {
       const Uniformity& test = one.test;
-      file.row(std::vector<std::string>{cell.label, one.quantity, one.by, exact_text(one.time),
-                                        in_words(test.verdict), std::to_string(test.band.values),
-                                        std::to_string(one.undefined), exact_text(test.mean),
-                                        exact_text(test.variance), exact_text(test.deviation),
-                                        exact_text(p_value(test)), exact_text(test.band.joint)});
+      frame.add({{"cell", cell.label},
+                 {"quantity", one.quantity},
+                 {"by", one.by},
+                 {"time", "s", one.time},
+                 {"verdict", in_words(test.verdict)},
+                 {"values", "1", static_cast<double>(test.band.values)},
+                 {"undefined", "1", static_cast<double>(one.undefined)},
+                 {"mean", "1", test.mean},
+                 {"variance", "1", test.variance},
+                 {"largest_deviation", "1", test.deviation},
+                 {"p_value", "1", p_value(test)},
+                 {"band_joint", "1", test.band.joint}});
     }
   }
-  file.close();
+  return frame;
 }
 
 /// Counts as shares of all values, minus the points of the ECDF.
@@ -411,12 +338,12 @@ std::vector<Figure> calibration_figures(const StudyAnalysis& study) {
 }
 
 std::vector<Section> calibration_sections(const StudyAnalysis& study) {
-  if (!has_calibration(study)) return {};
   std::vector<const JudgedPits*> all;
   for (const CellAnalysis& cell : study.cells) {
     std::ranges::move(tests_of(cell, [](const JudgedPits&) { return true; }),
                       std::back_inserter(all));
   }
+  if (all.empty()) return {};
   Section section = section_of("calibration", {{"faults", faults_text(all)}});
   section.is_for_terminal = false;
   section.add("calibration", calibration_table(study));
@@ -426,11 +353,71 @@ std::vector<Section> calibration_sections(const StudyAnalysis& study) {
 
 }  // namespace
 
+RunPits pits_of(const RunRows& rows, std::size_t particles, std::uint64_t run,
+                std::span<const Eigen::Vector2d> landmarks) {
+  RunPits pits;
+  if (rows.truth.empty()) return pits;
+  const MomentRows& estimate = estimate_of(rows);
+  const auto scans = calibration_scans(rows.truth.size() / 3);
+  pits.has_pose = !estimate.covariance.empty();
+  pits.has_rank = !rows.cloud.log_weight.empty();
+  pits.has_landmark = rows.final_map && !landmarks.empty();
+  for (std::size_t m = 0; m < kQuarters; ++m) {
+    if (pits.has_pose) {
+      const bool drawn = particles > 0 && is_drawn(rows, scans[m]);
+      pits.pose[m] = drawn ? drawn_pits(rows, draws_at(rows, particles, scans[m]), scans[m])
+                           : gaussian_pits(rows.truth, estimate, scans[m]);
+    }
+    if (pits.has_rank) pits.rank[m] = rank_pits(rows.truth, rows.cloud, scans[m], m, evenly(run));
+  }
+  if (pits.has_landmark) pits.landmark = landmark_pits(*rows.final_map, run, landmarks);
+  return pits;
+}
+
+std::array<double, kQuarters> nees_pits(std::span<const double> nees, std::size_t dimension) {
+  const boost::math::chi_squared law(static_cast<double>(dimension));
+  std::array<double, kQuarters> pits;
+  const auto scans = calibration_scans(nees.size());
+  for (std::size_t m = 0; m < kQuarters; ++m) {
+    const double value = nees[scans[m]];
+    pits[m] = std::isfinite(value) ? boost::math::cdf(law, value) : kNaN;
+  }
+  return pits;
+}
+
+std::vector<JudgedPits> CalibrationSums::result(std::span<const double> times, double level) const {
+  if (runs_.empty()) return {};
+  const RunPits& first = runs_.front();
+  PitJudge judge(runs_, most_tests(first), level);
+  const auto scans = calibration_scans(times.size());
+  const auto add_pose = [&](const char* by, auto RunPits::*pits) {
+    for (std::size_t m = 0; m < kQuarters; ++m) {
+      for (std::size_t c = 0; c < kComponents.size(); ++c) {
+        judge.add({kComponents[c], by, times[scans[m]], 0, {}}, PitOf::error,
+                  [=](const RunPits& run) { return (run.*pits)[m][c]; });
+      }
+    }
+  };
+  if (first.has_pose) add_pose("Gaussian", &RunPits::pose);
+  if (first.has_rank) add_pose("particles", &RunPits::rank);
+  if (first.has_landmark) {
+    for (std::size_t c = 0; c < first.landmark.size(); ++c) {
+      judge.add({std::string("landmark ") + kComponents[c], "Gaussian", times.back(), 0, {}},
+                PitOf::error, [=](const RunPits& run) { return run.landmark[c]; });
+    }
+  }
+  for (std::size_t m = 0; m < (first.has_nees ? kQuarters : 0); ++m) {
+    judge.add({kNees, "Gaussian", times[scans[m]], 0, {}}, PitOf::squared_error,
+              [=](const RunPits& run) { return run.nees[m]; });
+  }
+  return std::move(judge.found);
+}
+
 Metric calibration_metric() {
   return {.sums = make_sums<CalibrationOverRuns>,
           .sections = calibration_sections,
           .figures = calibration_figures,
-          .files = {{"calibration.csv", has_calibration, write_calibration}}};
+          .files = {{"calibration.csv", calibration_frame}}};
 }
 
 }  // namespace montecarta::analysis

@@ -4,7 +4,7 @@
 #include "analysis/metrics/mismatch.hpp"
 #include "analysis/metrics/nees.hpp"
 #include "analysis/metrics/score.hpp"
-#include "analysis/output/csv_file.hpp"
+#include "analysis/output/frame.hpp"
 #include "analysis/statistics/spread.hpp"
 #include "analysis/verdict/verdict.hpp"
 
@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <span>
 #include <string>
 #include <string_view>
 #include <typeindex>
@@ -89,14 +90,14 @@ struct CellAnalysis {
   std::size_t looks_planned = 0;  ///< at its verdict, where cells stop by it, else 0
   std::size_t looks_made = 0;     ///< of them
   std::vector<FailedRun> failures;
-  Verdict verdict;                        ///< on the whole error by the leading moments
-  Moments leading = Moments::spread;      ///< of the verdict: the first of kMoments there is
-  std::vector<NeesResult> nees;           ///< leading first; pose, position, heading; may be empty
-  std::vector<std::uint64_t> runs;        ///< numbers of the complete runs, increasing
-  ScoreTable scores;                      ///< of each of them
-  std::vector<Interval> score_intervals;  ///< {score} of the mean over infinitely many runs
-  std::vector<NamedSeries> scan_series;   ///< of all_scan_series() those that apply
-  Findings findings;                      ///< all else, by the metric's own type
+  Verdict verdict;                         ///< on the whole error by the leading moments
+  Moments leading = Moments::spread;       ///< of the verdict: the first of kMoments there is
+  std::vector<NeesResult> nees;            ///< leading first; pose, position, heading; may be empty
+  std::vector<std::uint64_t> runs;         ///< numbers of the complete runs, increasing
+  ScoreTable scores;                       ///< of each of them
+  std::vector<Interval> score_intervals;   ///< {score} of the mean over infinitely many runs
+  std::vector<Frame::Column> scan_series;  ///< of all_scan_series() those that apply
+  Findings findings;                       ///< all else, by the metric's own type
 
   /// The result of a metric; nullptr where it does not apply.
   template <class T>
@@ -121,5 +122,32 @@ struct CellAnalysis {
   /// {scan} of this name; empty where it does not apply.
   const std::vector<double>& over_time(std::string_view series) const;
 };
+
+/// Places (left, right) of the numbers that two increasing lists share.
+std::vector<std::pair<std::size_t, std::size_t>> common_places(
+    std::span<const std::uint64_t> left, std::span<const std::uint64_t> right);
+
+/// Runs of two cells in the same worlds. A cell has no value in a run that failed or that has no
+/// finite score; it then loses to a cell that has a value.
+struct PairedRuns {
+  std::vector<double> left, right;  ///< of each run in which both have a value, in order
+  std::size_t left_alone = 0;       ///< runs in which only `left` has a value: it wins
+  std::size_t right_alone = 0;
+  std::size_t neither = 0;   ///< ended in both cells, without a value in either: tied
+  std::size_t unpaired = 0;  ///< ended in one of the two cells only
+
+  std::size_t ended() const { return left.size() + left_alone + right_alone + neither; }
+  /// Left minus right, of each run in which both have a value.
+  std::vector<double> differences() const;
+};
+
+PairedRuns paired_runs(const CellAnalysis& left, const CellAnalysis& right, const Score& score);
+
+/// Whether any run of the cell has a finite value.
+bool has_score(const CellAnalysis& cell, const Score& score);
+
+/// Whether the score applies to the cell: whether a run has a finite value, or all runs failed.
+/// EKF-SLAM, for instance, has no effective particles.
+bool is_judged_by(const CellAnalysis& cell, const Score& score);
 
 }  // namespace montecarta::analysis

@@ -5,7 +5,6 @@
 #include "analysis/metrics/cell_analysis.hpp"
 #include "analysis/metrics/metric.hpp"
 #include "analysis/metrics/study_analysis.hpp"
-#include "analysis/output/csv_file.hpp"
 #include "filters/models/ackermann.hpp"
 #include "filters/models/eigen_jacobians.hpp"
 #include "filters/models/vehicle_settings.hpp"
@@ -406,20 +405,17 @@ Efficiency efficiency_of(const CellAnalysis& cell, const CramerRaoBound& bound) 
 
 namespace {
 
-void bound_numbers(const CellAnalysis& cell, std::vector<NamedNumber>& all) {
-  all.push_back({"position_efficiency", "1", cell.get<Efficiency>().position});
-  all.push_back({"heading_efficiency", "1", cell.get<Efficiency>().heading});
-  all.push_back({"map_efficiency", "1", cell.get<Efficiency>().map});
-}
+const std::vector<ResultNumber<Efficiency>> kEfficiencies = {
+    {"position_efficiency", "1", &Efficiency::position},
+    {"heading_efficiency", "1", &Efficiency::heading},
+    {"map_efficiency", "1", &Efficiency::map}};
 
 /// One row for each scan: the Cramer-Rao bound of position and heading.
-void write_bound(const StudyAnalysis& study, const std::filesystem::path& path) {
-  CsvFile file(path);
-  file.row(std::vector<std::string>{"time [s]", "position_bound [m]", "heading_bound [rad]"});
-  for (std::size_t s = 0; s < study.bound.position.size(); ++s) {
-    file.row(std::vector<double>{study.times[s], study.bound.position[s], study.bound.heading[s]});
-  }
-  file.close();
+Frame bound_frame(const StudyAnalysis& study) {
+  if (study.bound.empty()) return {};
+  return {{{"time", "s", study.times},
+           {"position_bound", "m", study.bound.position},
+           {"heading_bound", "rad", study.bound.heading}}};
 }
 
 }  // namespace
@@ -434,9 +430,7 @@ std::vector<std::string> bound_notes(const CramerRaoBound& bound) {
 }
 
 Metric bound_metric() {
-  return {.add_numbers = bound_numbers,
-          .files = {{"bound.csv", [](const StudyAnalysis& study) { return !study.bound.empty(); },
-                     write_bound}}};
+  return {.add_numbers = numbers_by(kEfficiencies), .files = {{"bound.csv", bound_frame}}};
 }
 
 }  // namespace montecarta::analysis

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Errors of the estimates, cost of a run, and numbers of arithmetic fallbacks.
-#include "analysis/metrics/cell_panels.hpp"
+#include "analysis/metrics/cell_report.hpp"
 #include "analysis/metrics/measured_run.hpp"
-#include "analysis/metrics/metric.hpp"
-#include "analysis/metrics/study_analysis.hpp"
 #include "analysis/statistics/spread.hpp"
 #include "engine/numbers/angle.hpp"
 

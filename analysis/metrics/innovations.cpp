@@ -2,12 +2,8 @@
 // Size and whiteness of the innovations, which need no truth.
 #include "analysis/metrics/innovations.hpp"
 
-#include "analysis/metrics/cell_panels.hpp"
-#include "analysis/metrics/cell_range.hpp"
+#include "analysis/metrics/cell_report.hpp"
 #include "analysis/metrics/measured_run.hpp"
-#include "analysis/metrics/metric.hpp"
-#include "analysis/metrics/study_analysis.hpp"
-#include "analysis/output/number_text.hpp"
 #include "analysis/statistics/spread.hpp"
 
 #include <boost/math/distributions/normal.hpp>
@@ -59,21 +55,29 @@ class InnovationsOverRuns final : public MergedSums<InnovationsOverRuns> {
   InnovationSums innovations_;
 };
 
-void innovations_numbers(const CellAnalysis& cell, std::vector<NamedNumber>& all) {
-  const bool known = cell.find<Innovations>() != nullptr;
-  const Innovations& found = cell.get<Innovations>();
-  all.push_back({"nis_per_component", "1", known ? found.verdict.ratio_estimate() : kNaN});
-  all.push_back({"nis_per_component_lower", "1", known ? found.verdict.ratio().lower : kNaN});
-  all.push_back({"nis_per_component_upper", "1", known ? found.verdict.ratio().upper : kNaN});
-  all.push_back({"nis_share_inside", "1", known ? found.share_inside : kNaN});
+double nis_ratio(const Innovations& found) { return found.verdict.ratio_estimate(); }
+
+const std::vector<ResultNumber<Innovations>> kInnovationQuantities = {
+    {"nis_per_component",
+     "1",
+     nis_ratio,
+     "NIS per component",
+     {},
+     [](const Innovations& found) { return found.verdict.ratio(); }},
+    {"nis_share_inside", "1", &Innovations::share_inside, "scans in band", percent}};
+
+void innovations_numbers(const CellAnalysis& cell, Frame::Row& all) {
+  const Innovations* found = cell.find<Innovations>();
+  add_numbers(kInnovationQuantities, found, all);
   for (std::size_t lag = 1; lag <= kInnovationLags; ++lag) {
-    all.push_back({"innovation_correlation_" + std::to_string(lag), "1",
-                   known ? found.autocorrelation[lag - 1] : kNaN});
+    all.emplace_back("innovation_correlation_" + std::to_string(lag), "1",
+                     found != nullptr ? found->autocorrelation[lag - 1] : kNaN);
   }
-  all.push_back({"innovation_correlation_bound", "1", known ? widest_bound(found) : kNaN});
+  all.emplace_back("innovation_correlation_bound", "1",
+                   found != nullptr ? widest_bound(*found) : kNaN);
 }
 
-void innovations_series(const CellAnalysis& cell, std::vector<NamedSeries>& all) {
+void innovations_series(const CellAnalysis& cell, std::vector<Frame::Column>& all) {
   const Innovations* innovations = cell.find<Innovations>();
   if (innovations == nullptr || innovations->average.empty()) return;
   all.push_back({"nis_per_component", "1", innovations->average});
@@ -81,28 +85,21 @@ void innovations_series(const CellAnalysis& cell, std::vector<NamedSeries>& all)
   all.push_back({"nis_upper", "1", ends_of(innovations->bounds, &Interval::upper)});
 }
 
-std::vector<TextTable::Entry> innovation_row(const CellAnalysis& cell, const Innovations& found,
-                                             double level) {
-  const std::size_t lag = found.worst_lag;
-  return {{"cell", cell.label, Align::left},
-          {"NIS per component [" + level_text(level) + "]",
-           with_interval(found.verdict.ratio_estimate(), found.verdict.ratio())},
-          {"scans in band", percent(found.share_inside)},
-          {"correlation at lag 1", readable(found.autocorrelation.front())},
-          {"largest correlation",
-           lag == 0 ? "-"
-                    : readable(found.autocorrelation[lag - 1]) + " at lag " + std::to_string(lag)},
-          {"its bound", lag == 0 ? "-" : readable(found.white_bound[lag - 1])},
-          {"innovations", whiteness_in_words(found), Align::left}};
-}
-
-TextTable innovation_table(const StudyAnalysis& study) {
-  TextTable table;
-  for (const CellAnalysis& cell : study.cells) {
-    const Innovations* found = cell.find<Innovations>();
-    if (found != nullptr) table.add(innovation_row(cell, *found, study.level));
-  }
-  return table;
+std::vector<TextTable::Entry> innovation_row(const CellAnalysis& cell, double level) {
+  std::vector<TextTable::Entry> row;
+  const Innovations* found = cell.find<Innovations>();
+  if (found == nullptr) return row;
+  add_entries(kInnovationQuantities, *found, level, row);
+  const std::size_t lag = found->worst_lag;
+  const auto at_worst = [&](const std::vector<double>& values) {
+    return lag == 0 ? "-" : readable(values[lag - 1]);
+  };
+  row.push_back({"correlation at lag 1", readable(found->autocorrelation.front())});
+  row.push_back({"largest correlation", at_worst(found->autocorrelation) +
+                                            (lag == 0 ? "" : " at lag " + std::to_string(lag))});
+  row.push_back({"its bound", at_worst(found->white_bound)});
+  row.push_back({"innovations", whiteness_in_words(*found), Align::left});
+  return row;
 }
 
 /// Where white innovations stay: one band for each number of pairs of scans; where there are none
@@ -122,12 +119,9 @@ std::vector<Band> white_bands(const StudyAnalysis& study) {
 }
 
 Figure innovation_figure(const StudyAnalysis& study) {
-  Figure figure = figure_of("nis");
-  const CellValues nis = [](const CellAnalysis& cell) { return cell.get<Innovations>().average; };
-  add_panels(
-      cell_panels(study, {"nis_per_component", "NIS per component", {}, {}, Scale::automatic}, nis),
-      study.times, figure);
-  return figure;
+  return cell_figure(study, figure_of("nis"),
+                     {"nis_per_component", "NIS per component", {}, {}, Scale::automatic},
+                     [](const CellAnalysis& cell) { return cell.get<Innovations>().average; });
 }
 
 Figure whiteness_figure(const StudyAnalysis& study) {
@@ -146,16 +140,15 @@ Figure whiteness_figure(const StudyAnalysis& study) {
 }
 
 std::vector<Section> innovations_sections(const StudyAnalysis& study) {
-  const TextTable table = innovation_table(study);
-  if (table.rows.empty()) return {};
   const CellNumber nis = [](const CellAnalysis& cell) {
-    const Innovations* found = cell.find<Innovations>();
-    return found == nullptr ? kNaN : found->verdict.ratio_estimate();
+    return nis_ratio(cell.get<Innovations>());
   };
-  Section section = section_of("innovations", {{"nis", range_over_cells(study, nis)}});
-  section.add("innovation", table);
-  section.add_notes("notes", {{"lags", std::to_string(kInnovationLags)}});
-  return {section};
+  const CellEntries row = [&](const CellAnalysis& cell) {
+    return innovation_row(cell, study.level);
+  };
+  return table_section(section_of("innovations", {{"nis", range_over_cells(study, nis)}}),
+                       "innovation", cell_table(study, row),
+                       {{"lags", std::to_string(kInnovationLags)}});
 }
 
 std::vector<Figure> innovations_figures(const StudyAnalysis& study) {

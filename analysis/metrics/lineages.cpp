@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Ancestors of the particles, and the Monte Carlo error of few particles.
+// Ancestors of the particles, their effective number, and the Monte Carlo error of few of them.
 #include "analysis/metrics/lineages.hpp"
 
-#include "analysis/metrics/cell_analysis.hpp"
-#include "analysis/metrics/diversity.hpp"
+#include "analysis/metrics/cell_report.hpp"
 #include "analysis/metrics/measured_run.hpp"
-#include "analysis/metrics/metric.hpp"
-#include "analysis/output/number_text.hpp"
 #include "analysis/statistics/spread.hpp"
 #include "engine/errors.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string>
 
 namespace montecarta::analysis {
@@ -48,21 +46,27 @@ class LineagesOverRuns final : public MergedSums<LineagesOverRuns> {
   LineageSums lineages_;
 };
 
-void lineages_numbers(const CellAnalysis& cell, std::vector<NamedNumber>& all) {
-  const bool known = cell.find<LineageSummary>() != nullptr;
-  const LineageSummary& lineages = cell.get<LineageSummary>();
-  for (std::size_t lag = 0; lag < kLineageLags.size(); ++lag) {
-    all.push_back({"distinct_ancestors_" + readable(kLineageLags[lag], 1) + "_s_ago", "1",
-                   known ? lineages.ancestors[lag] : kNaN});
-  }
-  all.push_back({"coalescence", "s", known ? lineages.coalescence : kNaN});
-  all.push_back({"coalesced_share", "1", known ? lineages.coalesced_share : kNaN});
-  all.push_back({"monte_carlo_share", "1", known ? lineages.monte_carlo_share : kNaN});
+template <std::size_t kLag>
+double ancestors_ago(const LineageSummary& found) {
+  return found.ancestors[kLag];
 }
 
-}  // namespace
+/// In words where all runs have one.
+std::string common_ancestor_text(double coalescence) {
+  return std::isfinite(coalescence) ? readable(coalescence) + " s" : "-";
+}
 
-namespace {
+const std::vector<ResultNumber<LineageSummary>> kLineageQuantities = {
+    {"distinct_ancestors_1_s_ago", "1", ancestors_ago<0>, "ancestors, 1 s ago"},
+    {"distinct_ancestors_2_s_ago", "1", ancestors_ago<1>},
+    {"distinct_ancestors_5_s_ago", "1", ancestors_ago<2>},
+    {"distinct_ancestors_10_s_ago", "1", ancestors_ago<3>, "10 s ago"},
+    {"distinct_ancestors_20_s_ago", "1", ancestors_ago<4>},
+    {"distinct_ancestors_50_s_ago", "1", ancestors_ago<5>},
+    {"distinct_ancestors_100_s_ago", "1", ancestors_ago<6>, "100 s ago"},
+    {"coalescence", "s", &LineageSummary::coalescence, "common ancestor", common_ancestor_text},
+    {"coalesced_share", "1", &LineageSummary::coalesced_share, "scans with one", percent},
+    {"monte_carlo_share", "1", &LineageSummary::monte_carlo_share}};
 
 /// Whether everyone is their own parent. Throws RunError where a parent does not exist.
 bool is_identity(std::span<const std::uint32_t> parents) {
@@ -77,6 +81,113 @@ bool is_identity(std::span<const std::uint32_t> parents) {
                    " particles (the column is damaged): run the study again");
   }
   return differences == 0;
+}
+
+using Counts = std::vector<std::uint32_t>;
+
+template <Counts Diversity::*kCounts>
+std::vector<double> counts_over_time(const MeasuredRun& run) {
+  const Diversity* diversity = run.metrics.diversity();
+  if (diversity == nullptr) return {};
+  return {(diversity->*kCounts).begin(), (diversity->*kCounts).end()};
+}
+
+template <Counts Diversity::*kCounts>
+double mean_of_counts(const MeasuredRun& run) {
+  return mean_of(counts_over_time<kCounts>(run));
+}
+
+double first_with_descendants(const MeasuredRun& run) {
+  const Diversity* diversity = run.metrics.diversity();
+  return diversity == nullptr ? kNaN : diversity->root.back();
+}
+
+constexpr Score kParticlesScores[] = {
+    {"ess", "1", "effective particles",
+     [](const MeasuredRun& run) { return mean_of(run.rows.ess); }, Better::higher},
+    {"resampling_rate", "1", "share of scans that resample",
+     [](const MeasuredRun& run) { return mean_of(run.rows.resampled); }, Better::neither},
+    {"ancestors_last_resampling", "1", "distinct particles after a resampling",
+     mean_of_counts<&Diversity::last_resampling>, Better::higher},
+    {"ancestors_10_s_ago", "1", "distinct ancestors 10 s ago", mean_of_counts<&Diversity::lag>,
+     Better::higher},
+    {"ancestors_at_start", "1", "distinct ancestors at the start", mean_of_counts<&Diversity::root>,
+     Better::higher},
+    {"ancestors_at_start_at_the_end", "1", "first particles that have descendants at the end",
+     first_with_descendants, Better::higher},
+};
+
+constexpr ScanSeries kParticlesSeries[] = {
+    {"ess", "1", [](const MeasuredRun& run) { return run.rows.ess; }},
+    {"ancestors_last_resampling", "1", counts_over_time<&Diversity::last_resampling>},
+    {"ancestors_10_s_ago", "1", counts_over_time<&Diversity::lag>},
+    {"ancestors_at_start", "1", counts_over_time<&Diversity::root>},
+};
+
+std::vector<TextTable::Entry> diversity_row(const StudyAnalysis& study, const CellAnalysis& cell) {
+  const bool has_ess = study.own_drives > 0 ? cell.complete > 0 : !cell.over_time("ess").empty();
+  if (!has_ess) return {};
+  std::vector<TextTable::Entry> row = {
+      {"ESS", readable(cell.over_runs("ess").mean)},
+      {"resampled", percent(cell.over_runs("resampling_rate").mean)}};
+  LineageSummary none{.coalescence = kNaN, .coalesced_share = kNaN};
+  none.ancestors.fill(kNaN);
+  const LineageSummary* found = cell.find<LineageSummary>();
+  add_entries(kLineageQuantities, found != nullptr ? *found : none, study.level, row);
+  return row;
+}
+
+/// A panel of distinct ancestors.
+Panel ancestor_panel(const StudyAnalysis& study, const std::string& series,
+                     const std::string& label) {
+  const CellValues values = [&](const CellAnalysis& cell) { return cell.over_time(series); };
+  return {series, label, cell_curves(study, values), {}, Scale::logarithmic};
+}
+
+Figure diversity_figure(const StudyAnalysis& study) {
+  Figure figure = figure_of("diversity");
+  add_panels({ancestor_panel(study, "ancestors_last_resampling", "parents, last resampling"),
+              ancestor_panel(study, "ancestors_10_s_ago", "ancestors, 10 s ago"),
+              ancestor_panel(study, "ancestors_at_start", "ancestors at the start")},
+             study.times, figure);
+  return figure;
+}
+
+Figure ess_figure(const StudyAnalysis& study) {
+  Figure figure = figure_of("ess");
+  const CellValues share = [](const CellAnalysis& cell) {
+    return scaled(cell.over_time("ess"), 100.0 / static_cast<double>(cell.particles));
+  };
+  add_panels(
+      {{"ess_share", "effective particles [%]", cell_curves(study, share), {}, Scale::percent}},
+      study.times, figure);
+  return figure;
+}
+
+/// How far back the common ancestor lies, or, without ancestry, how many particles count.
+std::string diversity_summary(const StudyAnalysis& study) {
+  const CellNumber back = [](const CellAnalysis& cell) {
+    const LineageSummary* lineages = cell.find<LineageSummary>();
+    return lineages == nullptr ? kNaN : lineages->coalescence;
+  };
+  const std::string range = range_over_cells(study, back, fixed_seconds);
+  if (range != "-") return "the common ancestor of all particles lies " + range + " back";
+  const CellNumber ess = [](const CellAnalysis& cell) { return cell.over_runs("ess").mean; };
+  return "effective particles (ESS) " + range_over_cells(study, ess);
+}
+
+std::vector<Section> particles_sections(const StudyAnalysis& study) {
+  Section section = section_of("diversity");
+  const TextTable table =
+      cell_table(study, [&](const CellAnalysis& cell) { return diversity_row(study, cell); });
+  section.add("diversity", table);
+  section.summary = diversity_summary(study);
+  if (!table.rows.empty()) section.add_notes("notes");
+  return {section};
+}
+
+std::vector<Figure> particles_figures(const StudyAnalysis& study) {
+  return {diversity_figure(study), ess_figure(study)};
 }
 
 }  // namespace
@@ -202,7 +313,80 @@ Metric lineages_metric() {
   return {.scores = kLineagesScores,
           .scores_are_numbers = false,
           .sums = make_sums<LineagesOverRuns>,
-          .add_numbers = lineages_numbers};
+          .add_numbers = numbers_by(kLineageQuantities)};
+}
+
+/// Walks from resampling to resampling; between them everyone is their own parent.
+std::uint32_t DiversityCounter::ancestors_before(std::size_t first, std::size_t s) {
+  set_.start(particles_);
+  for (std::size_t next = resampled_[s]; next > first;) {
+    set_.step_back(parents(next - 1));
+    next = next > 1 ? resampled_[next - 2] : 0;
+  }
+  return static_cast<std::uint32_t>(set_.size());
+}
+
+void DiversityCounter::count_last_resampling() {
+  for (std::size_t s = 0; s < resampled_.size(); ++s) {
+    auto& distinct = result_.last_resampling[s];
+    if (resampled_[s] == s + 1) {
+      distinct = ancestors_before(s, s);
+    } else if (s > 0) {
+      distinct = result_.last_resampling[s - 1];
+    }
+  }
+}
+
+void DiversityCounter::count_lag(std::span<const double> times) {
+  std::size_t first = 0;  // the first scan later than kDiversityLag ago
+  for (std::size_t s = 0; s < times.size(); ++s) {
+    const std::size_t first_before = first;
+    while (times[first] <= times[s] - kDiversityLag + 1e-9) ++first;
+    const auto outside = [&](std::size_t f) { return f == 0 ? 0 : resampled_[f - 1]; };
+    const bool same =
+        s > 0 && resampled_[s] == resampled_[s - 1] && outside(first) == outside(first_before);
+    result_.lag[s] = same ? result_.lag[s - 1] : ancestors_before(first, s);
+  }
+}
+
+void DiversityCounter::count_root() {
+  set_.start(particles_);
+  root_.resize(particles_);
+  std::iota(root_.begin(), root_.end(), 0u);
+  for (std::size_t s = 0; s < resampled_.size(); ++s) {
+    if (resampled_[s] == s + 1) {
+      previous_ = root_;
+      for (std::size_t i = 0; i < particles_; ++i) root_[i] = previous_[parents(s)[i]];
+      set_.assign(root_);
+      result_.root[s] = static_cast<std::uint32_t>(set_.size());
+    } else if (s > 0) {
+      result_.root[s] = result_.root[s - 1];
+    }
+  }
+}
+
+const Diversity& DiversityCounter::count(Row ancestor, std::size_t particles,
+                                         std::span<const double> times) {
+  expect(ancestor.size() == times.size() * particles, "ancestors are {scan, particle}");
+  ancestor_ = ancestor;
+  particles_ = particles;
+  for (auto* column : {&result_.last_resampling, &result_.lag, &result_.root}) {
+    column->assign(times.size(), static_cast<std::uint32_t>(particles));
+  }
+  find_resamplings(ancestor, particles, resampled_);
+  count_last_resampling();
+  count_lag(times);
+  count_root();
+  return result_;
+}
+
+Metric particles_metric() { return {.scores = kParticlesScores}; }
+
+/// Apart from the scores: in files its series come last.
+Metric diversity_metric() {
+  return {.scan_series = kParticlesSeries,
+          .sections = particles_sections,
+          .figures = particles_figures};
 }
 
 }  // namespace montecarta::analysis

@@ -5,9 +5,9 @@
 #include "analysis/metrics/cramer_rao.hpp"
 #include "analysis/metrics/error_anatomy.hpp"
 #include "analysis/metrics/imported_estimates.hpp"
-#include "analysis/statistics/group_sequential.hpp"
 #include "analysis/statistics/sampler_scale.hpp"
 #include "analysis/statistics/spread.hpp"
+#include "analysis/verdict/family.hpp"
 #include "engine/core/pose.hpp"
 #include "engine/errors.hpp"
 
@@ -85,6 +85,48 @@ void put_on_full_scale(NeesRows& rows) {
       value = on_full_scale({value, rank}, rows.dimension[b]);
     }
   }
+}
+
+bool says(const ResultFile& file, const char* setting, const char* value) {
+  return std::ranges::count(file.scenario(), TextPairs::value_type{setting, value}) > 0;
+}
+
+/// Only then are estimates drawn as filters believe; else no filter can be calibrated.
+bool noise_is_matched(const ResultFile& file) {
+  return file.has_truth() && says(file, "noise", "matched");
+}
+
+/// Criteria for the maps of a drive with known truth; recorded drives are judged by their beacons.
+MapCriteria map_criteria_of(const ResultFile& file) {
+  MapCriteria criteria;
+  if (!file.has_truth()) return criteria;
+  criteria.known = !file.landmarks().empty();
+  if (const auto world = simulated_world_of(file)) criteria.view = world->view;
+  criteria.identities_known = says(file, "association.kind", "known");
+  return criteria;
+}
+
+DriveCriteria criteria_of_drive(const RunDrive& drive) {
+  DriveCriteria criteria{drive.scan_times, {}, {}};
+  for (const ReferencePath& path : drive.references) {
+    criteria.references.emplace_back(path, drive.scan_times, drive.start);
+    if (path.covariance.empty()) continue;
+    criteria.judged_fixes.emplace_back(path, drive.scan_times, drive.start);
+  }
+  return criteria;
+}
+
+RunPits measured_pits(const MeasuredRun& run, const RunCriteria& criteria, std::size_t particles) {
+  RunPits pits;
+  if (criteria.calibrates) {
+    const std::span<const Eigen::Vector2d> landmarks(run.rows.landmarks);
+    pits = pits_of(run.rows, particles, run.rows.run,
+                   landmarks.first(criteria.map.identities_known ? landmarks.size() : 0));
+  }
+  const NeesRows* nees = run.metrics.leading_nees();
+  pits.has_nees = nees != nullptr;
+  if (nees != nullptr) pits.nees = nees_pits(nees->value[0], nees->dimension[0]);
+  return pits;
 }
 
 }  // namespace
@@ -218,39 +260,6 @@ void RunMetrics::measure(const RunRows& rows, std::size_t particles,
   lineages_ = walker_.walk(rows, particles, times, squared_position_);
 }
 
-namespace {
-
-bool says(const ResultFile& file, const char* setting, const char* value) {
-  return std::ranges::count(file.scenario(), TextPairs::value_type{setting, value}) > 0;
-}
-
-/// Only then are estimates drawn as filters believe; else no filter can be calibrated.
-bool noise_is_matched(const ResultFile& file) {
-  return file.has_truth() && says(file, "noise", "matched");
-}
-
-/// Criteria for the maps of a drive with known truth; recorded drives are judged by their beacons.
-MapCriteria map_criteria_of(const ResultFile& file) {
-  MapCriteria criteria;
-  if (!file.has_truth()) return criteria;
-  criteria.known = !file.landmarks().empty();
-  if (const auto world = simulated_world_of(file)) criteria.view = world->view;
-  criteria.identities_known = says(file, "association.kind", "known");
-  return criteria;
-}
-
-DriveCriteria criteria_of_drive(const RunDrive& drive) {
-  DriveCriteria criteria{drive.scan_times, {}, {}};
-  for (const ReferencePath& path : drive.references) {
-    criteria.references.emplace_back(path, drive.scan_times, drive.start);
-    if (path.covariance.empty()) continue;
-    criteria.judged_fixes.emplace_back(path, drive.scan_times, drive.start);
-  }
-  return criteria;
-}
-
-}  // namespace
-
 double RunCriteria::verdict_level(std::uint64_t runs) const {
   return level_of_look(level, looks, runs);
 }
@@ -284,23 +293,6 @@ RunCriteria criteria_of(const ResultFile& file, double level, double within) {
   for (const auto& [x, y] : file.landmarks()) criteria.beacons.emplace_back(x, y);
   return criteria;
 }
-
-namespace {
-
-RunPits measured_pits(const MeasuredRun& run, const RunCriteria& criteria, std::size_t particles) {
-  RunPits pits;
-  if (criteria.calibrates) {
-    const std::span<const Eigen::Vector2d> landmarks(run.rows.landmarks);
-    pits = pits_of(run.rows, particles, run.rows.run,
-                   landmarks.first(criteria.map.identities_known ? landmarks.size() : 0));
-  }
-  const NeesRows* nees = run.metrics.leading_nees();
-  pits.has_nees = nees != nullptr;
-  if (nees != nullptr) pits.nees = nees_pits(nees->value[0], nees->dimension[0]);
-  return pits;
-}
-
-}  // namespace
 
 void MeasuredRun::measure(const RunCriteria& criteria, std::size_t particles) {
   const DriveCriteria* own = criteria.drives.empty() ? nullptr : &criteria.drives.at(rows.run);

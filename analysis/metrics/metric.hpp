@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "analysis/metrics/cell_analysis.hpp"
 #include "analysis/metrics/score.hpp"
-#include "analysis/output/csv_file.hpp"
+#include "analysis/output/frame.hpp"
+#include "analysis/output/number_text.hpp"
 #include "analysis/output/text_table.hpp"
 #include "analysis/statistics/merging.hpp"
 
-#include <filesystem>
+#include <functional>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace montecarta::analysis {
 
-struct CellAnalysis;
 struct MeasuredRun;
 struct StudyAnalysis;
 struct RunCriteria;
@@ -42,9 +44,58 @@ class MergedSums : public MetricSums {
 /// A CSV file of a study.
 struct TableFile {
   const char* name;
-  bool (*applies)(const StudyAnalysis& study);
-  void (*write)(const StudyAnalysis& study, const std::filesystem::path& path);
+  Frame (*of)(const StudyAnalysis& study);  ///< without columns: there is no file
 };
+
+/// A number of a result, described once: its columns in files, and its column in a table.
+template <class Result>
+struct ResultNumber {
+  std::string name;  ///< in files; empty: in the table alone
+  std::string units;
+  std::function<double(const Result&)> value;
+  std::string heading = {};                      ///< of the table; empty: in files alone
+  std::function<std::string(double)> text = {};  ///< of the table; empty: readable()
+  /// Of the value: NAME_lower and NAME_upper in files, brackets in the table.
+  std::function<Interval(const Result&)> interval = {};
+};
+
+/// Adds them to a row of a file; NaN where there is no result.
+template <class Result>
+void add_numbers(const std::vector<ResultNumber<Result>>& quantities, const Result* result,
+                 Frame::Row& row) {
+  for (const ResultNumber<Result>& one : quantities) {
+    if (one.name.empty()) continue;
+    row.emplace_back(one.name, one.units, result == nullptr ? kNaN : one.value(*result));
+    if (!one.interval) continue;
+    const Interval interval = result == nullptr ? Interval{kNaN, kNaN} : one.interval(*result);
+    row.emplace_back(one.name + "_lower", one.units, interval.lower);
+    row.emplace_back(one.name + "_upper", one.units, interval.upper);
+  }
+}
+
+/// Adds them to a row of a table, with intervals at `level`.
+template <class Result>
+void add_entries(const std::vector<ResultNumber<Result>>& quantities, const Result& result,
+                 double level, std::vector<TextTable::Entry>& row) {
+  for (const ResultNumber<Result>& one : quantities) {
+    if (one.heading.empty()) continue;
+    if (one.interval) {
+      row.push_back({one.heading + " [" + level_text(level) + "]",
+                     with_interval(one.value(result), one.interval(result))});
+    } else {
+      const double value = one.value(result);
+      row.push_back({one.heading, one.text ? one.text(value) : readable(value)});
+    }
+  }
+}
+
+/// Metric::add_numbers of the quantities of a result that a cell may have.
+template <class Result>
+auto numbers_by(const std::vector<ResultNumber<Result>>& quantities) {
+  return [&quantities](const CellAnalysis& cell, Frame::Row& row) {
+    add_numbers(quantities, cell.find<Result>(), row);
+  };
+}
 
 template <class Sums>
 std::unique_ptr<MetricSums> make_sums(const RunCriteria& criteria) {
@@ -60,9 +111,9 @@ struct Metric {
   /// Sums for results beyond means of scores, e.g. make_sums<MySums>; `criteria` outlive the sums.
   std::unique_ptr<MetricSums> (*sums)(const RunCriteria& criteria) = nullptr;
   /// Adds single numbers: the same names for every cell, NaN where a number does not apply.
-  void (*add_numbers)(const CellAnalysis& cell, std::vector<NamedNumber>& all) = nullptr;
+  std::function<void(const CellAnalysis& cell, Frame::Row& all)> add_numbers = nullptr;
   /// Adds series over scans; those that do not apply are absent.
-  void (*add_series)(const CellAnalysis& cell, std::vector<NamedSeries>& all) = nullptr;
+  void (*add_series)(const CellAnalysis& cell, std::vector<Frame::Column>& all) = nullptr;
   /// Sections of the report, with tables and notes.
   std::vector<Section> (*sections)(const StudyAnalysis& study) = nullptr;
   /// Figures; those without data are left out.
@@ -74,9 +125,9 @@ struct Metric {
 std::span<const Metric> all_metrics();
 
 /// All single numbers of a cell except those of its NEES tests.
-std::vector<NamedNumber> numbers_of(const CellAnalysis& cell);
+Frame::Row numbers_of(const CellAnalysis& cell);
 /// All series of a cell.
-std::vector<NamedSeries> series_of(const CellAnalysis& cell);
+std::vector<Frame::Column> series_of(const CellAnalysis& cell);
 /// All sections of the metrics.
 std::vector<Section> sections_of(const StudyAnalysis& study);
 std::vector<Figure> figures_of(const StudyAnalysis& study);

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/mismatch.hpp"
 
-#include "analysis/metrics/cell_range.hpp"
-#include "analysis/metrics/metric.hpp"
-#include "analysis/metrics/study_analysis.hpp"
-#include "analysis/output/number_text.hpp"
+#include "analysis/metrics/cell_report.hpp"
 
 #include <algorithm>
 #include <array>
@@ -56,7 +53,7 @@ MismatchGrid grid_of(const std::vector<const CellAnalysis*>& cells) {
   return grid;
 }
 
-constexpr std::size_t kMostColumns = 3;
+constexpr std::size_t kMostMismatchColumns = 3;
 
 /// Blue, white and red (ColorBrewer's RdBu, safe for the colour-blind), light enough for dark
 /// numbers at both ends; 1 is white, ten times and a tenth are the ends.
@@ -68,18 +65,18 @@ constexpr std::array kPalette = {Colour{0x43, 0x93, 0xc3}, Colour{0xa6, 0xcf, 0x
 std::string colour_at(double at) { return colour_within(kPalette, 0.5 * (at + 1.0)); }
 
 FigureData data_of(const MismatchGrid& grid) {
-  FigureData data{"mismatch_" + grid.family + ".csv",
-                  {"motion_noise", "sensor_noise", "anees_per_component", "column", "row",
-                   "log10 of anees_per_component, from -1 to 1"},
-                  {}};
+  FigureData data{"mismatch_" + grid.family + ".csv"};
   for (Eigen::Index m = 0; m < grid.anees.rows(); ++m) {
     for (Eigen::Index s = 0; s < grid.anees.cols(); ++s) {
       const double anees = grid.anees(m, s);
       if (std::isnan(anees)) continue;
-      data.rows.push_back({grid.motion_noise[static_cast<std::size_t>(m)],
-                           grid.sensor_noise[static_cast<std::size_t>(s)], anees,
-                           static_cast<double>(m), static_cast<double>(s),
-                           std::clamp(std::log10(anees), -1.0, 1.0)});
+      data.frame.add({{"motion_noise", "1", grid.motion_noise[static_cast<std::size_t>(m)]},
+                      {"sensor_noise", "1", grid.sensor_noise[static_cast<std::size_t>(s)]},
+                      {"anees_per_component", "1", anees},
+                      {"column", "1", static_cast<double>(m)},
+                      {"row", "1", static_cast<double>(s)},
+                      {"log10 of anees_per_component, from -1 to 1", "1",
+                       std::clamp(std::log10(anees), -1.0, 1.0)}});
     }
   }
   return data;
@@ -91,8 +88,8 @@ std::vector<std::string> names_of(const std::vector<double>& factors) {
   return names;
 }
 
-/// From the rows of data_of().
-ChartPanel chart_panel(const MismatchGrid& grid, const FigureData& data) {
+/// From the columns of data_of().
+ChartPanel chart_panel(const MismatchGrid& grid, const Frame& data) {
   const auto rows = static_cast<double>(grid.sensor_noise.size());
   ChartPanel panel{
       grid.family + ", sensor noise, believed by told", {false, -0.5, rows - 0.5}, {}, {}, {}};
@@ -101,14 +98,14 @@ ChartPanel chart_panel(const MismatchGrid& grid, const FigureData& data) {
   ChartMarks& tiles = panel.marks.emplace_back();
   tiles.name = grid.family;
   tiles.shape = ChartMarks::Shape::boxes;
-  tiles.facts = {{"motion noise", {}}, {"sensor noise", {}}, {"ANEES by components", {}}};
-  for (const auto& row : data.rows) {
-    tiles.x.push_back(row[3]);
-    tiles.y.push_back(row[4]);
-    tiles.fill.push_back(colour_at(row[5]));
-    tiles.text.push_back(readable(row[2], 3));
-    for (std::size_t f = 0; f < tiles.facts.size(); ++f) tiles.facts[f].values.push_back(row[f]);
-  }
+  if (data.columns.empty()) return panel;
+  const auto column = [&](std::size_t c) { return data.columns[c].numbers; };
+  tiles.facts = {
+      {"motion noise", column(0)}, {"sensor noise", column(1)}, {"ANEES by components", column(2)}};
+  tiles.x = column(3);
+  tiles.y = column(4);
+  for (const double anees : column(2)) tiles.text.push_back(readable(anees, 3));
+  for (const double at : column(5)) tiles.fill.push_back(colour_at(at));
   tiles.width.assign(tiles.x.size(), 0.98);
   tiles.height = tiles.width;
   return panel;
@@ -118,11 +115,11 @@ Chart chart_of(const std::vector<MismatchGrid>& grids, const std::vector<FigureD
   std::size_t most = 0;
   for (const MismatchGrid& grid : grids) most = std::max(most, grid.motion_noise.size());
   Chart chart{"motion noise, believed by told", -0.5, static_cast<double>(most) - 0.5, {}};
-  chart.columns = kMostColumns;
+  chart.columns = kMostMismatchColumns;
   chart.least = 260;
   chart.aspect = 0.7;
   for (std::size_t g = 0; g < grids.size(); ++g) {
-    chart.panels.push_back(chart_panel(grids[g], data[g]));
+    chart.panels.push_back(chart_panel(grids[g], data[g].frame));
   }
   return chart;
 }
@@ -134,6 +131,16 @@ Figure mismatch_figure(const StudyAnalysis& study) {
   for (const MismatchGrid& grid : grids) figure.data.push_back(data_of(grid));
   figure.chart = chart_of(grids, figure.data);
   return figure;
+}
+
+/// The heading of the figure.
+std::vector<Section> mismatch_sections(const StudyAnalysis& study) {
+  const CellNumber ratio = [](const CellAnalysis& cell) { return cell.verdict.ratio_estimate(); };
+  return {section_of("mismatch", {{"ratios", range_over_cells(study, ratio)}})};
+}
+
+std::vector<Figure> mismatch_figures(const StudyAnalysis& study) {
+  return {mismatch_figure(study)};
 }
 
 }  // namespace
@@ -163,20 +170,6 @@ std::vector<MismatchGrid> mismatch_grids(const StudyAnalysis& study) {
   }
   return grids;
 }
-
-namespace {
-
-/// The heading of the figure.
-std::vector<Section> mismatch_sections(const StudyAnalysis& study) {
-  const CellNumber ratio = [](const CellAnalysis& cell) { return cell.verdict.ratio_estimate(); };
-  return {section_of("mismatch", {{"ratios", range_over_cells(study, ratio)}})};
-}
-
-std::vector<Figure> mismatch_figures(const StudyAnalysis& study) {
-  return {mismatch_figure(study)};
-}
-
-}  // namespace
 
 Metric mismatch_metric() { return {.sections = mismatch_sections, .figures = mismatch_figures}; }
 

@@ -2,15 +2,10 @@
 // NEES of the pose and its parts, and the sections and figures of the verdict.
 #include "analysis/metrics/nees_accumulator.hpp"
 
-#include "analysis/metrics/cell_panels.hpp"
-#include "analysis/metrics/cell_range.hpp"
+#include "analysis/metrics/cell_report.hpp"
 #include "analysis/metrics/cramer_rao.hpp"
 #include "analysis/metrics/imported_estimates.hpp"
-#include "analysis/metrics/metric.hpp"
-#include "analysis/metrics/score.hpp"
-#include "analysis/metrics/study_analysis.hpp"
 #include "analysis/metrics/verdict_table.hpp"
-#include "analysis/output/number_text.hpp"
 #include "analysis/output/strips.hpp"
 #include "analysis/statistics/spread.hpp"
 
@@ -21,23 +16,6 @@
 
 namespace montecarta::analysis {
 namespace {
-
-/// Bounds of every scan by the runs that are valid there: nearly always the same number.
-class BoundsOfRuns {
- public:
-  BoundsOfRuns(std::size_t dimension, double level) : dimension_(dimension), level_(level) {}
-
-  Interval of(std::uint32_t runs) {
-    const auto [found, is_new] = known_.try_emplace(runs);
-    if (is_new && runs > 0) found->second = nees_bounds(runs, dimension_, level_);
-    return found->second;
-  }
-
- private:
-  std::size_t dimension_;
-  double level_;
-  std::map<std::uint32_t, Interval> known_;
-};
 
 /// Shares of scans outside the bounds of a scan.
 void count_shares(NeesResult& result) {
@@ -53,74 +31,6 @@ void count_shares(NeesResult& result) {
   result.share_above = above / tested;
   result.share_below = below / tested;
 }
-
-}  // namespace
-
-NeesAccumulator::NeesAccumulator(ErrorBlock block, Moments moments, std::size_t scans,
-                                 std::size_t dimension)
-    : block_(block),
-      moments_(moments),
-      dimension_(dimension == 0 ? dimension_of(block) : dimension),
-      sum_(scans),
-      runs_(scans) {}
-
-void NeesAccumulator::add(const RunMetrics& metrics) {
-  const auto block = static_cast<std::size_t>(block_);
-  const NeesRows& rows = metrics.nees(moments_);
-  add(rows.value[block], rows.rank[block], rows.too_few[block]);
-}
-
-void NeesAccumulator::add(std::span<const double> value, std::span<const int> rank,
-                          std::span<const std::uint8_t> too_few) {
-  samples_ += value.size();
-  for (std::size_t s = 0; s < value.size(); ++s) {
-    const bool has_lower_rank =
-        !rank.empty() && rank[s] >= 0 && static_cast<std::size_t>(rank[s]) < dimension_;
-    if (has_lower_rank) ++lower_rank_;
-    if (!std::isfinite(value[s])) {
-      if (!too_few.empty() && too_few[s] != 0) {
-        ++too_few_;
-      } else if (!has_lower_rank) {
-        ++unusable_;
-      }
-      continue;
-    }
-    sum_[s] += value[s];
-    ++runs_[s];
-  }
-  const double average = mean_of_finite(value);
-  if (std::isnan(average)) {
-    ++unjudged_runs_;
-  } else {
-    run_averages_.push_back(average);
-  }
-}
-
-NeesSeries NeesAccumulator::series(double level) const {
-  NeesSeries series;
-  series.dimension = dimension_;
-  series.samples = samples_;
-  series.lower_rank = lower_rank_;
-  series.unusable = unusable_;
-  series.too_few = too_few_;
-  series.runs = runs_;
-  series.run_averages = run_averages_;
-  series.unjudged_runs = unjudged_runs_;
-  BoundsOfRuns bounds(series.dimension, level);
-  for (std::size_t s = 0; s < sum_.size(); ++s) {
-    series.bounds.push_back(bounds.of(runs_[s]));
-    series.average.push_back(sum_[s] / runs_[s]);  // NaN where no run is valid
-  }
-  return series;
-}
-
-NeesResult NeesAccumulator::result(double level) const {
-  NeesResult result{block_, moments_, series(level), mean_of_finite(run_averages_), {}, 0.0, 0.0};
-  count_shares(result);
-  return result;
-}
-
-namespace {
 
 /// Mean over the scans of a run, by its leading moments.
 double mean_nees(const MeasuredRun& run, ErrorBlock block) {
@@ -168,7 +78,7 @@ class NeesOverRuns final : public MergedSums<NeesOverRuns> {
   std::vector<NeesAccumulator> nees_;  ///< leading first
 };
 
-void add_nees(const NeesResult& nees, std::vector<NamedSeries>& all) {
+void add_nees(const NeesResult& nees, std::vector<Frame::Column>& all) {
   const NeesSeries& series = nees.series;
   const std::string suffix = "_" + name_of(nees.block) + "_" + name_of(nees.moments);
   all.push_back({"anees" + suffix, "1", series.average});
@@ -177,7 +87,7 @@ void add_nees(const NeesResult& nees, std::vector<NamedSeries>& all) {
   all.push_back({"runs" + suffix, "1", {series.runs.begin(), series.runs.end()}});
 }
 
-void nees_series(const CellAnalysis& cell, std::vector<NamedSeries>& all) {
+void nees_series(const CellAnalysis& cell, std::vector<Frame::Column>& all) {
   for (const NeesResult& nees : cell.nees) add_nees(nees, all);
 }
 
@@ -324,6 +234,72 @@ std::vector<Figure> nees_figures(const StudyAnalysis& study) {
 }
 
 }  // namespace
+
+NeesAccumulator::NeesAccumulator(ErrorBlock block, Moments moments, std::size_t scans,
+                                 std::size_t dimension)
+    : block_(block),
+      moments_(moments),
+      dimension_(dimension == 0 ? dimension_of(block) : dimension),
+      sum_(scans),
+      runs_(scans) {}
+
+void NeesAccumulator::add(const RunMetrics& metrics) {
+  const auto block = static_cast<std::size_t>(block_);
+  const NeesRows& rows = metrics.nees(moments_);
+  add(rows.value[block], rows.rank[block], rows.too_few[block]);
+}
+
+void NeesAccumulator::add(std::span<const double> value, std::span<const int> rank,
+                          std::span<const std::uint8_t> too_few) {
+  samples_ += value.size();
+  for (std::size_t s = 0; s < value.size(); ++s) {
+    const bool has_lower_rank =
+        !rank.empty() && rank[s] >= 0 && static_cast<std::size_t>(rank[s]) < dimension_;
+    if (has_lower_rank) ++lower_rank_;
+    if (!std::isfinite(value[s])) {
+      if (!too_few.empty() && too_few[s] != 0) {
+        ++too_few_;
+      } else if (!has_lower_rank) {
+        ++unusable_;
+      }
+      continue;
+    }
+    sum_[s] += value[s];
+    ++runs_[s];
+  }
+  const double average = mean_of_finite(value);
+  if (std::isnan(average)) {
+    ++unjudged_runs_;
+  } else {
+    run_averages_.push_back(average);
+  }
+}
+
+NeesSeries NeesAccumulator::series(double level) const {
+  NeesSeries series;
+  series.dimension = dimension_;
+  series.samples = samples_;
+  series.lower_rank = lower_rank_;
+  series.unusable = unusable_;
+  series.too_few = too_few_;
+  series.runs = runs_;
+  series.run_averages = run_averages_;
+  series.unjudged_runs = unjudged_runs_;
+  std::map<std::uint32_t, Interval> bounds;  // by the runs of a scan: nearly always the same number
+  for (std::size_t s = 0; s < sum_.size(); ++s) {
+    const auto [found, is_new] = bounds.try_emplace(runs_[s]);
+    if (is_new && runs_[s] > 0) found->second = nees_bounds(runs_[s], dimension_, level);
+    series.bounds.push_back(found->second);
+    series.average.push_back(sum_[s] / runs_[s]);  // NaN where no run is valid
+  }
+  return series;
+}
+
+NeesResult NeesAccumulator::result(double level) const {
+  NeesResult result{block_, moments_, series(level), mean_of_finite(run_averages_), {}, 0.0, 0.0};
+  count_shares(result);
+  return result;
+}
 
 Metric nees_metric() {
   return {.scores = kNeesScores,

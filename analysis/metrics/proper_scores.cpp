@@ -2,12 +2,9 @@
 // Proper scoring rules, which rank distributions: log score and energy score (STATISTICS 23).
 #include "analysis/metrics/proper_scores.hpp"
 
-#include "analysis/metrics/cell_range.hpp"
+#include "analysis/metrics/cell_report.hpp"
 #include "analysis/metrics/measured_run.hpp"
-#include "analysis/metrics/metric.hpp"
 #include "analysis/metrics/nees.hpp"
-#include "analysis/metrics/study_analysis.hpp"
-#include "analysis/output/number_text.hpp"
 #include "analysis/statistics/spread.hpp"
 #include "engine/numbers/real.hpp"
 
@@ -36,6 +33,29 @@ double mean_energy_score(const RunRows& rows, std::size_t particles) {
                      Eigen::Vector2d(rows.truth[3 * s], rows.truth[3 * s + 1])));
   }
   return mean_of_finite(values);
+}
+
+constexpr Score kProperScores[] = {
+    {"log_score", "1", "log score of the pose",
+     [](const MeasuredRun& run) { return run.proper.log_score; }, Better::lower, false},
+    {"energy_score", "m", "energy score of the position",
+     [](const MeasuredRun& run) { return run.proper.energy_score; }},
+};
+
+std::vector<TextTable::Entry> proper_scores_row(const CellAnalysis& cell) {
+  const Spread log_scores = cell.known_over_runs("log_score");
+  if (log_scores.summary.n == 0) return {};
+  return {{"log score", readable(log_scores.summary.mean)},
+          {"energy score [m]", readable(cell.known_over_runs("energy_score").summary.mean)}};
+}
+
+std::vector<Section> proper_scores_sections(const StudyAnalysis& study) {
+  const CellNumber log_score = [](const CellAnalysis& cell) {
+    return cell.known_over_runs("log_score").summary.mean;
+  };
+  return table_section(
+      section_of("proper_scores", {{"scores", range_over_cells(study, log_score)}}),
+      "proper_scores", cell_table(study, proper_scores_row));
 }
 
 }  // namespace
@@ -70,41 +90,6 @@ ProperScores proper_scores(const RunRows& rows, std::size_t particles,
                            std::span<const Eigen::Matrix3d> covariances) {
   return {log_score(errors, covariances), mean_energy_score(rows, particles)};
 }
-
-namespace {
-
-constexpr Score kProperScores[] = {
-    {"log_score", "1", "log score of the pose",
-     [](const MeasuredRun& run) { return run.proper.log_score; }, Better::lower, false},
-    {"energy_score", "m", "energy score of the position",
-     [](const MeasuredRun& run) { return run.proper.energy_score; }},
-};
-
-TextTable proper_scores_table(const StudyAnalysis& study) {
-  TextTable table;
-  for (const CellAnalysis& cell : study.cells) {
-    const Spread log_scores = cell.known_over_runs("log_score");
-    if (log_scores.summary.n == 0) continue;
-    table.add({{"cell", cell.label, Align::left},
-               {"log score", readable(log_scores.summary.mean)},
-               {"energy score [m]", readable(cell.known_over_runs("energy_score").summary.mean)}});
-  }
-  return table;
-}
-
-std::vector<Section> proper_scores_sections(const StudyAnalysis& study) {
-  const TextTable table = proper_scores_table(study);
-  if (table.rows.empty()) return {};
-  const CellNumber log_score = [](const CellAnalysis& cell) {
-    return cell.known_over_runs("log_score").summary.mean;
-  };
-  Section section = section_of("proper_scores", {{"scores", range_over_cells(study, log_score)}});
-  section.add("proper_scores", table);
-  section.add_notes("notes");
-  return {section};
-}
-
-}  // namespace
 
 Metric proper_scores_metric() {
   return {.scores = kProperScores, .sections = proper_scores_sections};

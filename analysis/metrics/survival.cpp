@@ -2,11 +2,8 @@
 // How many runs are not lost yet, each judged by its own NEES.
 #include "analysis/metrics/survival.hpp"
 
-#include "analysis/metrics/cell_panels.hpp"
-#include "analysis/metrics/cell_range.hpp"
+#include "analysis/metrics/cell_report.hpp"
 #include "analysis/metrics/measured_run.hpp"
-#include "analysis/metrics/metric.hpp"
-#include "analysis/metrics/study_analysis.hpp"
 #include "analysis/statistics/spread.hpp"
 
 #include <boost/math/distributions/normal.hpp>
@@ -25,6 +22,67 @@ Interval wilson(double hits, double n, double level) {
   const double middle = (share + 0.5 * z * z / n) / scale;
   const double half = z * std::sqrt(share * (1.0 - share) / n + 0.25 * z * z / (n * n)) / scale;
   return {std::max(0.0, middle - half), std::min(1.0, middle + half)};
+}
+
+class SurvivalOverRuns final : public MergedSums<SurvivalOverRuns> {
+ public:
+  explicit SurvivalOverRuns(const RunCriteria& criteria) : criteria_(&criteria) {}
+  void add(const MeasuredRun& run) override {
+    const NeesRows* nees = run.metrics.leading_nees();
+    if (nees == nullptr) return;
+    if (dimension_ != nees->dimension[0]) {
+      dimension_ = nees->dimension[0];
+      run_bound_ = nees_bounds(1, dimension_, criteria_->level).upper;
+    }
+    std::vector<bool> above;
+    for (const double value : nees->value[0]) above.push_back(value > run_bound_);
+    const auto exit = first_lasting(above, kLastingScans);
+    run_exits_.push_back(exit ? criteria_->times[*exit] : std::numeric_limits<double>::infinity());
+  }
+  void put(CellAnalysis& cell) override {
+    if (run_exits_.empty()) return;
+    std::vector<double> ends = run_exits_;
+    for (const FailedRun& failure : cell.failures) ends.push_back(failure.time);
+    cell.findings.put(survival_of(ends, criteria_->times, criteria_->level));
+  }
+  static constexpr auto parts() { return std::tuple(appended(&SurvivalOverRuns::run_exits_)); }
+
+ private:
+  const RunCriteria* criteria_;
+  std::size_t dimension_ = 0;
+  double run_bound_ = kNaN;        ///< upper end of the band of a single run's NEES
+  std::vector<double> run_exits_;  ///< [s] {run}
+};
+
+const std::vector<ResultNumber<Survival>> kSurvivalQuantities = {
+    {"runs_lost", "1", [](const Survival& found) { return static_cast<double>(found.lost); }},
+    {"half_lost", "s", &Survival::median, {}, {}, &Survival::median_interval}};
+
+void survival_series(const CellAnalysis& cell, std::vector<Frame::Column>& all) {
+  const Survival& survival = cell.get<Survival>();
+  if (survival.share.empty()) return;
+  all.push_back({"runs_consistent", "1", survival.share});
+  all.push_back({"runs_consistent_lower", "1", ends_of(survival.interval, &Interval::lower)});
+  all.push_back({"runs_consistent_upper", "1", ends_of(survival.interval, &Interval::upper)});
+}
+
+std::vector<Figure> survival_figures(const StudyAnalysis& study) {
+  return {cell_figure(
+      study, figure_of("survival", {{"lasting", std::to_string(kLastingScans)}}),
+      {"runs_consistent", "runs not lost [%]", {}, {}, Scale::percent},
+      [](const CellAnalysis& cell) { return scaled(cell.get<Survival>().share, 100.0); })};
+}
+
+/// The heading of the figure.
+std::vector<Section> survival_sections(const StudyAnalysis& study) {
+  const CellNumber median = [](const CellAnalysis& cell) {
+    const Survival* survival = cell.find<Survival>();
+    return survival == nullptr ? kNaN : survival->median;
+  };
+  const NumberText time = [](double seconds) {
+    return std::isinf(seconds) ? "never" : fixed_seconds(seconds);
+  };
+  return {section_of("survival", {{"time", range_over_cells(study, median, time)}})};
 }
 
 }  // namespace
@@ -57,87 +115,9 @@ Survival survival_of(std::span<const double> ends, std::span<const double> times
   return survival;
 }
 
-namespace {
-
-class SurvivalOverRuns final : public MergedSums<SurvivalOverRuns> {
- public:
-  explicit SurvivalOverRuns(const RunCriteria& criteria) : criteria_(&criteria) {}
-  void add(const MeasuredRun& run) override {
-    const NeesRows* nees = run.metrics.leading_nees();
-    if (nees == nullptr) return;
-    if (dimension_ != nees->dimension[0]) {
-      dimension_ = nees->dimension[0];
-      run_bound_ = nees_bounds(1, dimension_, criteria_->level).upper;
-    }
-    std::vector<bool> above;
-    for (const double value : nees->value[0]) above.push_back(value > run_bound_);
-    const auto exit = first_lasting(above, kLastingScans);
-    run_exits_.push_back(exit ? criteria_->times[*exit] : std::numeric_limits<double>::infinity());
-  }
-  void put(CellAnalysis& cell) override {
-    if (run_exits_.empty()) return;
-    std::vector<double> ends = run_exits_;
-    for (const FailedRun& failure : cell.failures) ends.push_back(failure.time);
-    cell.findings.put(survival_of(ends, criteria_->times, criteria_->level));
-  }
-  static constexpr auto parts() { return std::tuple(appended(&SurvivalOverRuns::run_exits_)); }
-
- private:
-  const RunCriteria* criteria_;
-  std::size_t dimension_ = 0;
-  double run_bound_ = kNaN;        ///< upper end of the band of a single run's NEES
-  std::vector<double> run_exits_;  ///< [s] {run}
-};
-
-void survival_numbers(const CellAnalysis& cell, std::vector<NamedNumber>& all) {
-  const Survival& survival = cell.get<Survival>();
-  const bool known = survival.runs > 0;
-  all.push_back({"runs_lost", "1", known ? static_cast<double>(survival.lost) : kNaN});
-  all.push_back({"half_lost", "s", known ? survival.median : kNaN});
-  all.push_back({"half_lost_lower", "s", known ? survival.median_interval.lower : kNaN});
-  all.push_back({"half_lost_upper", "s", known ? survival.median_interval.upper : kNaN});
-}
-
-void survival_series(const CellAnalysis& cell, std::vector<NamedSeries>& all) {
-  const Survival& survival = cell.get<Survival>();
-  if (survival.share.empty()) return;
-  all.push_back({"runs_consistent", "1", survival.share});
-  all.push_back({"runs_consistent_lower", "1", ends_of(survival.interval, &Interval::lower)});
-  all.push_back({"runs_consistent_upper", "1", ends_of(survival.interval, &Interval::upper)});
-}
-
-Figure survival_figure(const StudyAnalysis& study) {
-  Figure figure = figure_of("survival", {{"lasting", std::to_string(kLastingScans)}});
-  const CellValues share = [](const CellAnalysis& cell) {
-    return scaled(cell.get<Survival>().share, 100.0);
-  };
-  add_panels(
-      cell_panels(study, {"runs_consistent", "runs not lost [%]", {}, {}, Scale::percent}, share),
-      study.times, figure);
-  return figure;
-}
-
-/// The heading of the figure.
-std::vector<Section> survival_sections(const StudyAnalysis& study) {
-  const CellNumber median = [](const CellAnalysis& cell) {
-    const Survival* survival = cell.find<Survival>();
-    return survival == nullptr ? kNaN : survival->median;
-  };
-  const NumberText time = [](double seconds) {
-    return std::isinf(seconds) ? "never" : fixed_seconds(seconds);
-  };
-  return {section_of("survival", {{"time", range_over_cells(study, median, time)}})};
-}
-
-std::vector<Figure> survival_figures(const StudyAnalysis& study) {
-  return {survival_figure(study)};
-}
-
-}  // namespace
-
 Metric survival_metric() {
   return {.sums = make_sums<SurvivalOverRuns>,
-          .add_numbers = survival_numbers,
+          .add_numbers = numbers_by(kSurvivalQuantities),
           .add_series = survival_series,
           .sections = survival_sections,
           .figures = survival_figures};

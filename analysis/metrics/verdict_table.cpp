@@ -1,16 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The verdict on the whole error of every cell: all families of tests, and the tables of it.
 #include "analysis/metrics/verdict_table.hpp"
 
+#include "analysis/metrics/cell_report.hpp"
 #include "analysis/metrics/cramer_rao.hpp"
 #include "analysis/metrics/imported_estimates.hpp"
-#include "analysis/metrics/nees.hpp"
+#include "analysis/metrics/measured_run.hpp"
 #include "analysis/metrics/survival.hpp"
 #include "analysis/output/number_text.hpp"
 #include "analysis/statistics/spread.hpp"
 #include "engine/numbers/angle.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <iterator>
+#include <optional>
 
 namespace montecarta::analysis {
 namespace {
@@ -27,25 +32,9 @@ std::string median_exit_text(const CellAnalysis& cell) {
   return time_with_interval(survival.median, survival.median_interval);
 }
 
-std::vector<TextTable::Entry> verdict_row(const CellAnalysis& cell, double level) {
+const NeesResult* tested_pose(const CellAnalysis& cell) {
   const NeesResult* pose = cell.find_nees(ErrorBlock::pose, cell.leading);
-  const bool is_tested = pose != nullptr && pose->is_tested();
-  return {{"cell", cell.label, Align::left},
-          {"runs", runs_in_words(cell), Align::left},
-          {"verdict", in_words(cell.verdict), Align::left},
-          {"NEES ratio [" + level_text(level) + "]", ratio_text(cell)},
-          {"scans in band", is_tested ? percent(pose->share_inside()) : "-"},
-          {"median time of loss", median_exit_text(cell)}};
-}
-
-std::vector<TextTable::Entry> accuracy_row(const CellAnalysis& cell, double level) {
-  return {{"cell", cell.label, Align::left},
-          {"position RMSE [m]", score_text(cell, "position_rmse", level).text()},
-          {"heading RMSE [deg]", score_text(cell, "heading_rmse", level, 180.0 / kPi).text()},
-          {"efficiency", percent(cell.get<Efficiency>().position)},
-          {"ESS", readable(cell.over_runs("ess").mean)},
-          {"ancestors", readable(cell.over_runs("ancestors_at_start_at_the_end").mean)},
-          {"CPU [s]", readable(cell.over_runs("cpu_seconds").mean)}};
+  return pose != nullptr && pose->is_tested() ? pose : nullptr;
 }
 
 /// The average of an ideal filter with these moments.
@@ -55,66 +44,213 @@ double ideal_nees(const CellAnalysis& cell, const NeesResult& nees) {
   return drawn ? ideal_spread_nees(d, cell.particles) : static_cast<double>(d);
 }
 
+template <auto NeesSeries::*kCount>
+double samples_of(const NeesResult& nees) {
+  return static_cast<double>(nees.series.*kCount);
+}
+
+std::string whole_number_text(double count) { return std::to_string(std::llround(count)); }
+
+const std::vector<ResultNumber<NeesResult>> kNeesQuantities = {
+    {"share_inside", "1", &NeesResult::share_inside, "inside", percent},
+    {"share_above", "1", &NeesResult::share_above, "above", percent},
+    {"share_below", "1", &NeesResult::share_below, "below", percent},
+    {"samples", "1", samples_of<&NeesSeries::samples>},
+    {"lower_rank", "1", samples_of<&NeesSeries::lower_rank>, "singular", whole_number_text},
+    {"unusable", "1", samples_of<&NeesSeries::unusable>, "unusable", whole_number_text},
+    {"too_few_draws", "1", samples_of<&NeesSeries::too_few>, "too few draws", whole_number_text},
+    {"unjudged_runs", "1", samples_of<&NeesSeries::unjudged_runs>, "unjudged runs",
+     whole_number_text}};
+
 std::vector<TextTable::Entry> consistency_row(const CellAnalysis& cell, const NeesResult& nees,
                                               double level) {
   const auto d = static_cast<double>(nees.series.dimension);
   const Interval& average = nees.average_interval;
-  const std::string of_level = level_text(level);
-  return {{"cell", cell.label, Align::left},
-          {"error", name_of(nees.block), Align::left},
-          {"covariance", name_of(nees.moments), Align::left},
-          {"ANEES", compact(nees.mean)},
-          {"NEES ratio [" + of_level + "]",
-           with_interval(nees.mean / d, {average.lower / d, average.upper / d})},
-          {"ideal", readable(ideal_nees(cell, nees))},
-          {of_level + " band", band_text(cell, nees.series.dimension, level)},
-          {"inside", percent(nees.share_inside())},
-          {"above", percent(nees.share_above)},
-          {"below", percent(nees.share_below)},
-          {"singular", std::to_string(nees.series.lower_rank)},
-          {"unusable", std::to_string(nees.series.unusable)},
-          {"too few draws", std::to_string(nees.series.too_few)},
-          {"unjudged runs", std::to_string(nees.series.unjudged_runs)}};
+  std::vector<TextTable::Entry> row = {
+      {"cell", cell.label, Align::left},
+      {"error", name_of(nees.block), Align::left},
+      {"covariance", name_of(nees.moments), Align::left},
+      {"ANEES", compact(nees.mean)},
+      {"NEES ratio [" + level_text(level) + "]",
+       with_interval(nees.mean / d, {average.lower / d, average.upper / d})},
+      {"ideal", readable(ideal_nees(cell, nees))},
+      {level_text(level) + " band", band_text(cell, nees.series.dimension, level)}};
+  add_entries(kNeesQuantities, nees, level, row);
+  return row;
+}
+
+Frame::Row family_row(const FamilyTest& test, const Member& member) {
+  return {{"from", "s", member.from},
+          {"to", "s", member.to},
+          {"estimate", "1", member.estimate},
+          {"lower", "1", member.interval.lower},
+          {"upper", "1", member.interval.upper},
+          {"simultaneous_lower", "1", member.simultaneous.lower},
+          {"simultaneous_upper", "1", member.simultaneous.upper},
+          {"p", "1", member.p},
+          {"family_p", "1", test.p},
+          {"shown", "1", test.is_shown(member) ? 1.0 : 0.0}};
+}
+
+constexpr std::size_t kComplete = 1;  // the column of complete runs
+
+/// "40", or "32 of 200" where runs failed, are missing or were not needed.
+std::string complete_runs_text(const CellAnalysis& cell) {
+  const std::size_t all = cell.complete + cell.failures.size() + cell.missing + cell.spared;
+  const std::string complete = std::to_string(cell.complete);
+  return cell.complete == all ? complete : complete + " of " + std::to_string(all);
+}
+
+/// "1.0 of 100": first particles that still have descendants at the end.
+std::string ancestors_text(const CellAnalysis& cell) {
+  const std::string count = readable(cell.over_runs("ancestors_at_start_at_the_end").mean, 2);
+  return count == "-" ? count : count + " of " + std::to_string(cell.particles);
+}
+
+/// Leaves out column `c` if all cells say `text` in it.
+void leave_out(std::size_t c, const std::string& text, TextTable& table) {
+  if (!std::ranges::all_of(table.rows, [&](const TableRow& row) { return row[c] == text; })) return;
+  const auto place = static_cast<std::ptrdiff_t>(c);
+  table.headings.erase(table.headings.begin() + place);
+  for (TableRow& row : table.rows) row.erase(row.begin() + place);
+}
+
+class VerdictOverRuns final : public MergedSums<VerdictOverRuns> {
+ public:
+  explicit VerdictOverRuns(const RunCriteria& criteria) : criteria_(&criteria) {}
+  void add(const MeasuredRun& run) override {
+    const WhitenedRun& errors = run.metrics.whitened();
+    if (errors.dimension == 0) return;
+    if (!sums_) sums_.emplace(errors.dimension, criteria_->times.size());
+    sums_->add(errors, run.metrics.leading_nees()->value[0]);
+  }
+  void put(CellAnalysis& cell) override {
+    const std::uint64_t ended = cell.complete + cell.failures.size();
+    const double level = criteria_->verdict_level(ended);
+    cell.verdict.level = level;
+    cell.verdict.within = criteria_->within;
+    if (!sums_) return;
+    cell.verdict = judge(sums_->families(level, {criteria_->components, criteria_->times}), level,
+                         criteria_->within, cell.complete);
+    const NeesSeries& series = cell.nees.front().series;
+    cell.verdict.samples = series.samples;
+    cell.verdict.unusable = series.unusable;
+    const bool has_samples = !series.run_averages.empty();
+    if (cell.verdict.families.empty() && has_samples) cell.verdict.answer = Answer::undecided;
+  }
+  static constexpr auto parts() { return std::tuple(added(&VerdictOverRuns::sums_)); }
+
+ private:
+  const RunCriteria* criteria_;
+  std::optional<WholeError> sums_;
+};
+
+/// p_FAMILY of each family; NaN where it does not apply.
+void verdict_numbers(const CellAnalysis& cell, Frame::Row& all) {
+  const Verdict& found = cell.verdict;
+  all.insert(all.end(),
+             {{"verdict_level", "1", found.level},
+              {"within", "1", found.within},
+              {"nees_ratio", "1", found.ratio_estimate()},
+              {"nees_ratio_lower", "1", found.ratio().lower},
+              {"nees_ratio_upper", "1", found.ratio().upper},
+              {"more_runs", "1", found.more_runs ? static_cast<double>(*found.more_runs) : kNaN}});
+  for (const Family family : kFamilies) {
+    const FamilyTest* test = found.find(family);
+    all.emplace_back("p_" + key_of(family), "1", test == nullptr ? kNaN : test->p);
+  }
+}
+
+/// Simultaneous interval of the ratio of every scan; NaN if a scan is not judged.
+void verdict_series(const CellAnalysis& cell, std::vector<Frame::Column>& all) {
+  const FamilyTest* scans = cell.verdict.find(Family::scan);
+  if (scans == nullptr) return;
+  const std::size_t n = cell.nees.front().series.average.size();
+  Frame::Column lower{"nees_ratio_lower", "1", std::vector<double>(n, kNaN)};
+  Frame::Column upper{"nees_ratio_upper", "1", std::vector<double>(n, kNaN)};
+  auto member = scans->members.begin();
+  for (std::size_t s = 0; s < n; ++s) {
+    if (std::isnan(cell.nees.front().series.average[s])) continue;
+    lower.numbers[s] = member->simultaneous.lower;
+    upper.numbers[s] = member->simultaneous.upper;
+    ++member;
+  }
+  all.push_back(std::move(lower));
+  all.push_back(std::move(upper));
+}
+
+TextTable family_table(const StudyAnalysis& study) {
+  TextTable table;
+  for (const CellAnalysis& cell : study.cells) {
+    for (const FamilyTest& test : cell.verdict.families) {
+      const Member& member = test.strongest();
+      table.add({{"cell", cell.label, Align::left},
+                 {"family", name_of(test.family), Align::left},
+                 {"p", readable(test.p, 2)},
+                 {"farthest from right", name_of(member), Align::left},
+                 {"estimate [" + level_text(study.level) + "]",
+                  with_interval(member.estimate, member.interval)},
+                 {"shown", test.is_rejected ? "yes" : "no", Align::left}});
+    }
+  }
+  return table;
+}
+
+std::vector<Section> verdict_sections(const StudyAnalysis& study) {
+  if (!study.has_truth) return {};
+  std::size_t tests = 0;
+  std::ptrdiff_t rejected = 0;
+  for (const CellAnalysis& cell : study.cells) {
+    tests += cell.verdict.families.size();
+    rejected += std::ranges::count_if(cell.verdict.families, &FamilyTest::is_rejected);
+  }
+  Section section = section_of(
+      "families", {{"rejected", std::to_string(rejected)}, {"tests", std::to_string(tests)}});
+  section.is_for_terminal = false;
+  return table_section(section, "families", family_table(study));
+}
+
+/// One row for each member of each family; of scans too.
+Frame families_frame(const StudyAnalysis& study) {
+  Frame frame;
+  for (const CellAnalysis& cell : study.cells) {
+    for (const FamilyTest& test : cell.verdict.families) {
+      for (const Member& member : test.members) {
+        frame.add(
+            {{"cell", cell.label}, {"family", key_of(test.family)}, {"member", name_of(member)}},
+            family_row(test, member));
+      }
+    }
+  }
+  return frame;
 }
 
 }  // namespace
 
 std::string name_of(ErrorBlock block) {
-  return block == ErrorBlock::pose       ? "pose"
-         : block == ErrorBlock::position ? "position"
-                                         : "heading";
+  return std::array{"pose", "position", "heading"}.at(static_cast<std::size_t>(block));
 }
 
 std::string name_of(Moments moments) {
-  return moments == Moments::mixture     ? "mixture"
-         : moments == Moments::corrected ? "corrected"
-                                         : "spread";
+  return std::array{"corrected", "mixture", "spread"}.at(static_cast<std::size_t>(moments));
 }
 
-std::vector<NamedNumber> numbers_of(const CellAnalysis& cell, const NeesResult& nees,
-                                    double level) {
+Frame::Row numbers_of(const CellAnalysis& cell, const NeesResult& nees, double level) {
   const std::size_t dimension = nees.series.dimension;
   const Interval band = nees_bounds(cell.complete, dimension, level);
-  return {{"level", "1", level},
-          {"dimension", "1", static_cast<double>(dimension)},
-          {"anees_mean", "1", nees.mean},
-          {"anees_mean_lower", "1", nees.average_interval.lower},
-          {"anees_mean_upper", "1", nees.average_interval.upper},
-          {"lower", "1", band.lower},
-          {"upper", "1", band.upper},
-          {"share_inside", "1", nees.share_inside()},
-          {"share_above", "1", nees.share_above},
-          {"share_below", "1", nees.share_below},
-          {"samples", "1", static_cast<double>(nees.series.samples)},
-          {"lower_rank", "1", static_cast<double>(nees.series.lower_rank)},
-          {"unusable", "1", static_cast<double>(nees.series.unusable)},
-          {"too_few_draws", "1", static_cast<double>(nees.series.too_few)},
-          {"unjudged_runs", "1", static_cast<double>(nees.series.unjudged_runs)}};
+  Frame::Row row = {{"level", "1", level},
+                    {"dimension", "1", static_cast<double>(dimension)},
+                    {"anees_mean", "1", nees.mean},
+                    {"anees_mean_lower", "1", nees.average_interval.lower},
+                    {"anees_mean_upper", "1", nees.average_interval.upper},
+                    {"lower", "1", band.lower},
+                    {"upper", "1", band.upper}};
+  add_numbers(kNeesQuantities, &nees, row);
+  return row;
 }
 
 std::string ratio_text(const CellAnalysis& cell) {
-  const NeesResult* pose = cell.find_nees(ErrorBlock::pose, cell.leading);
-  if (pose == nullptr || !pose->is_tested()) return "-";
+  if (tested_pose(cell) == nullptr) return "-";
   return with_interval(cell.verdict.ratio_estimate(), cell.verdict.ratio());
 }
 
@@ -150,15 +286,27 @@ std::string runs_in_words(const CellAnalysis& cell) {
 }
 
 TextTable verdict_table(const StudyAnalysis& study) {
-  TextTable table;
-  for (const CellAnalysis& cell : study.cells) table.add(verdict_row(cell, study.level));
-  return table;
+  return cell_table(study, [&](const CellAnalysis& cell) -> std::vector<TextTable::Entry> {
+    const NeesResult* pose = tested_pose(cell);
+    return {{"runs", runs_in_words(cell), Align::left},
+            {"verdict", in_words(cell.verdict), Align::left},
+            {"NEES ratio [" + level_text(study.level) + "]", ratio_text(cell)},
+            {"scans in band", pose == nullptr ? "-" : percent(pose->share_inside())},
+            {"median time of loss", median_exit_text(cell)}};
+  });
 }
 
 TextTable accuracy_table(const StudyAnalysis& study) {
-  TextTable table;
-  for (const CellAnalysis& cell : study.cells) table.add(accuracy_row(cell, study.level));
-  return table;
+  return cell_table(study, [&](const CellAnalysis& cell) -> std::vector<TextTable::Entry> {
+    const auto mean = [&](const char* score) { return readable(cell.over_runs(score).mean); };
+    return {
+        {"position RMSE [m]", score_text(cell, "position_rmse", study.level).text()},
+        {"heading RMSE [deg]", score_text(cell, "heading_rmse", study.level, 180.0 / kPi).text()},
+        {"efficiency", percent(cell.get<Efficiency>().position)},
+        {"ESS", mean("ess")},
+        {"ancestors", mean("ancestors_at_start_at_the_end")},
+        {"CPU [s]", mean("cpu_seconds")}};
+  });
 }
 
 TextTable consistency_table(const StudyAnalysis& study) {
@@ -169,25 +317,10 @@ TextTable consistency_table(const StudyAnalysis& study) {
   return table;
 }
 
-std::vector<NamedSeries> family_columns(const FamilyTest& test) {
-  std::vector<NamedSeries> columns;
-  for (const Member& member : test.members) {
-    const std::vector<NamedNumber> row = {{"from", "s", member.from},
-                                          {"to", "s", member.to},
-                                          {"estimate", "1", member.estimate},
-                                          {"lower", "1", member.interval.lower},
-                                          {"upper", "1", member.interval.upper},
-                                          {"simultaneous_lower", "1", member.simultaneous.lower},
-                                          {"simultaneous_upper", "1", member.simultaneous.upper},
-                                          {"p", "1", member.p},
-                                          {"family_p", "1", test.p},
-                                          {"shown", "1", test.is_shown(member) ? 1.0 : 0.0}};
-    if (columns.empty()) {
-      for (const NamedNumber& one : row) columns.push_back({one.name, one.units, {}});
-    }
-    for (std::size_t c = 0; c < row.size(); ++c) columns[c].values.push_back(row[c].value);
-  }
-  return columns;
+Frame family_frame(const FamilyTest& test) {
+  Frame frame;
+  for (const Member& member : test.members) frame.add(family_row(test, member));
+  return frame;
 }
 
 TextTable failure_table(const StudyAnalysis& study) {
@@ -256,6 +389,31 @@ std::vector<std::string> cautions(std::span<const CellAnalysis> cells,
   add("draws", draws);
   add("singular", singular);
   return sentences;
+}
+
+TextTable summary_table(const StudyAnalysis& study) {
+  TextTable table =
+      cell_table(study, [&](const CellAnalysis& cell) -> std::vector<TextTable::Entry> {
+        const auto mean = [&](const char* score) { return cell.over_runs(score).mean; };
+        return {{"complete", complete_runs_text(cell)},
+                {"verdict", name_of(cell.verdict.answer), Align::left},
+                {"NEES ratio [" + level_text(study.level) + "]", ratio_text(cell)},
+                {"RMSE [m]", readable(mean("position_rmse"))},
+                {"RMSE [deg]", readable(180.0 / kPi * mean("heading_rmse"))},
+                {"ancestors", ancestors_text(cell)},
+                {"CPU/run [s]", readable(mean("cpu_seconds"), 2)}};
+      });
+  for (std::size_t c = table.headings.size() - 1; c > kComplete; --c) leave_out(c, "-", table);
+  leave_out(kComplete, std::to_string(study.runs_here), table);
+  return table;
+}
+
+Metric verdict_metric() {
+  return {.sums = make_sums<VerdictOverRuns>,
+          .add_numbers = verdict_numbers,
+          .add_series = verdict_series,
+          .sections = verdict_sections,
+          .files = {{"families.csv", families_frame}}};
 }
 
 }  // namespace montecarta::analysis

@@ -12,6 +12,11 @@
 
 namespace montecarta::analysis {
 
+/// One row a cell, narrow enough for a terminal: complete runs, verdict, NEES ratio with its
+/// interval, RMSE of position and heading, ancestors and cost. Columns without a number are left
+/// out, and so are runs if every cell completed all of the file.
+TextTable summary_table(const StudyAnalysis& study);
+
 /// One row for each cell: its runs, the verdict, and the numbers behind it.
 TextTable verdict_table(const StudyAnalysis& study);
 
@@ -21,10 +26,10 @@ TextTable accuracy_table(const StudyAnalysis& study);
 /// One row for each cell and definition of covariance and error: the average NEES.
 TextTable consistency_table(const StudyAnalysis& study);
 /// One average NEES in single numbers. The band is that of all complete runs.
-std::vector<NamedNumber> numbers_of(const CellAnalysis& cell, const NeesResult& nees, double level);
+Frame::Row numbers_of(const CellAnalysis& cell, const NeesResult& nees, double level);
 
-/// The members of a family as columns {member}, the same for CSV and HDF5.
-std::vector<NamedSeries> family_columns(const FamilyTest& test);
+/// The members of a family, one a row, the same for CSV and HDF5.
+Frame family_frame(const FamilyTest& test);
 
 /// One row for each failed run: cell, run, step, reason.
 TextTable failure_table(const StudyAnalysis& study);

@@ -2,6 +2,7 @@
 #include "analysis/output/csv_file.hpp"
 
 #include "analysis/output/number_text.hpp"
+#include "analysis/output/prose.hpp"
 #include "engine/errors.hpp"
 
 #include <cerrno>
@@ -14,9 +15,7 @@ namespace {
 
 std::string quoted(const std::string& field) {
   if (field.find_first_of(",\"\n\r") == std::string::npos) return field;
-  std::string text = "\"";
-  for (const char c : field) text += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return text + "\"";
+  return "\"" + replaced(field, "\"", "\"\"") + "\"";
 }
 
 [[noreturn]] void cannot_write(const std::filesystem::path& path) {
@@ -91,26 +90,6 @@ void write_text(const std::filesystem::path& path, const std::string& text) {
     std::filesystem::remove(draft, ignored);
     throw;
   }
-}
-
-std::string heading(const std::string& name, const std::string& units) {
-  return units == "1" ? name : name + " [" + units + "]";
-}
-
-void NamedRows::row(const std::vector<std::pair<std::string, std::string>>& texts,
-                    const std::vector<NamedNumber>& numbers) {
-  std::vector<std::string> headings, fields;
-  for (const auto& [name, text] : texts) {
-    headings.push_back(name);
-    fields.push_back(text);
-  }
-  for (const NamedNumber& number : numbers) {
-    headings.push_back(heading(number.name, number.units));
-    fields.push_back(exact_text(number.value));
-  }
-  if (!is_headed_) file_.row(headings);
-  is_headed_ = true;
-  file_.row(fields);
 }
 
 }  // namespace montecarta::analysis

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/output/figure.hpp"
 
+#include "analysis/output/csv_file.hpp"
 #include "analysis/output/gnuplot.hpp"
 #include "analysis/output/number_text.hpp"
 
@@ -15,33 +16,6 @@ namespace montecarta::analysis {
 namespace {
 
 constexpr std::array kColours = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9"};
-
-}  // namespace
-
-std::string line_colour(std::size_t i) {
-  if (i == kTruthStyle) return "#999999";
-  return i == kReferenceStyle ? "black" : kColours[i % kColours.size()];
-}
-
-std::size_t line_dashes(std::size_t i) {
-  if (i == kTruthStyle) return 1;
-  return i == kReferenceStyle ? 2 : 1 + i / kColours.size();
-}
-
-std::string colour_within(std::span<const Colour> palette, double share) {
-  const double place = share * static_cast<double>(palette.size() - 1);
-  const auto low = std::min(static_cast<std::size_t>(place), palette.size() - 2);
-  Colour colour{};
-  for (std::size_t c = 0; c < colour.size(); ++c) {
-    colour[c] = static_cast<int>(std::lround(
-        std::lerp(palette[low][c], palette[low + 1][c], place - static_cast<double>(low))));
-  }
-  char text[8];
-  std::snprintf(text, sizeof text, "#%02x%02x%02x", colour[0], colour[1], colour[2]);
-  return text;
-}
-
-namespace {
 
 /// Least and greatest number of a stretch, the earlier one first; NaN where there is none.
 std::array<double, 2> extremes(std::span<const double> values) {
@@ -64,13 +38,6 @@ set datafile columnheaders
 set key noenhanced samplen 1.6 width 1
 )";
 
-void write_data(const FigureData& data, const std::filesystem::path& directory) {
-  CsvFile file(directory / data.name);
-  file.row(data.headings);
-  for (const auto& row : data.rows) file.row(row);
-  file.close();
-}
-
 /// The whole script: the same figure for the page and for print, with as much room for a row of the
 /// legend in both.
 std::string script_of(const Figure& figure) {
@@ -87,51 +54,6 @@ std::string script_of(const Figure& figure) {
          centimetres(drawn.height) + " font 'sans,8' linewidth 1.3\nset output '" + figure.name +
          ".pdf'\n" + kStyle + "set key spacing 1.9\n" + drawn.commands + "unset output\n";
 }
-
-}  // namespace
-
-ThinnedSeries thin(std::span<const double> times, const std::vector<NamedSeries>& series,
-                   std::size_t buckets) {
-  if (times.size() <= 2 * buckets) return {{times.begin(), times.end()}, series};
-  ThinnedSeries thinned;
-  for (const NamedSeries& one : series) thinned.series.push_back({one.name, one.units, {}});
-  for (std::size_t b = 0; b < buckets; ++b) {
-    const std::size_t begin = b * times.size() / buckets;
-    const std::size_t end = (b + 1) * times.size() / buckets;
-    thinned.times.push_back(times[begin]);
-    thinned.times.push_back(times[(begin + end) / 2]);
-    for (std::size_t i = 0; i < series.size(); ++i) {
-      const std::span<const double> stretch(series[i].values.data() + begin, end - begin);
-      for (const double value : extremes(stretch)) thinned.series[i].values.push_back(value);
-    }
-  }
-  return thinned;
-}
-
-void draw(const Figure& figure, const std::filesystem::path& directory) {
-  make_directory(directory / "data");
-  make_directory(directory / "figures");
-  for (const FigureData& data : figure.data) write_data(data, directory / "data");
-  const std::string script = figure.name + ".gp";
-  write_text(directory / "figures" / script, script_of(figure));
-  run_gnuplot(directory / "figures", script);
-}
-
-FigureData data_of(const std::string& name, const std::string& heading,
-                   const ThinnedSeries& thinned) {
-  FigureData data{name, {heading}, {}};
-  for (const NamedSeries& one : thinned.series) {
-    data.headings.push_back(one.units == "1" ? one.name : one.name + " [" + one.units + "]");
-  }
-  for (std::size_t k = 0; k < thinned.times.size(); ++k) {
-    std::vector<double> row = {thinned.times[k]};
-    for (const NamedSeries& one : thinned.series) row.push_back(one.values[k]);
-    data.rows.push_back(std::move(row));
-  }
-  return data;
-}
-
-namespace {
 
 constexpr std::size_t kBuckets = 240;
 constexpr double kBelowBand = 0.3, kAboveBand = 1e5;  // where the axis ends at the latest
@@ -155,9 +77,7 @@ Range range_of(const Panel& panel) {
   range.least = std::max(range.least, panel.least);
   for (const Band& band : panel.bands) {
     range.least = std::clamp(range.least, kBelowBand * band.lower, 0.5 * band.lower);
-    range.greatest = std::isfinite(band.upper)
-                         ? std::clamp(range.greatest, band.upper, kAboveBand * band.upper)
-                         : std::max(range.greatest, kDecade * band.lower);
+    range.greatest = std::clamp(range.greatest, band.upper, kAboveBand * band.upper);
   }
   if (!std::isfinite(range.least)) return {1.0, kDecade};
   return range;
@@ -185,10 +105,7 @@ ChartAxis axis_of(const Panel& panel) {
   const bool wide = range.greatest > kLogarithmicFrom * range.least;
   if (panel.scale == Scale::percent) return {false, 0.0, 100.0};
   if (panel.scale == Scale::from_zero || (panel.scale == Scale::automatic && !wide)) {
-    const bool endless =
-        std::ranges::any_of(panel.bands, [](const Band& band) { return std::isinf(band.upper); });
-    return {false, 0.0,
-            endless ? kRoom * range.greatest : std::numeric_limits<double>::quiet_NaN()};
+    return {false, 0.0, std::numeric_limits<double>::quiet_NaN()};
   }
   if (!panel.bands.empty()) return {true, range.least, range.greatest};
   const double from = std::floor(std::log10(range.least));
@@ -196,36 +113,89 @@ ChartAxis axis_of(const Panel& panel) {
   return {true, std::pow(10.0, from), std::pow(10.0, to)};
 }
 
-ThinnedSeries thinned(const Panel& panel, const std::vector<double>& places) {
-  std::vector<NamedSeries> series;
+/// An envelope follows its curve.
+Frame thinned(const Panel& panel, const std::vector<double>& places, const std::string& x_label) {
+  Frame frame{{{x_label, "1", places}}};
   for (const Curve& curve : panel.curves) {
-    series.push_back({curve.legend, "1", curve.values});
-    if (!curve.envelope.empty())
-      series.push_back({curve.legend + " envelope", "1", curve.envelope});
+    frame.columns.push_back({curve.legend, "1", curve.values});
+    if (!curve.envelope.empty()) {
+      frame.columns.push_back({curve.legend + " envelope", "1", curve.envelope});
+    }
   }
-  return thin(places, series, kBuckets);
+  return thin(frame, kBuckets);
 }
 
-ChartPanel chart_panel(const Panel& panel, const ChartAxis& axis, const ThinnedSeries& series) {
-  ChartPanel chart{panel.label, axis, series.times, {}, panel.bands};
-  auto next = series.series.begin();  // an envelope follows its curve
+ChartPanel chart_panel(const Panel& panel, const ChartAxis& axis, const Frame& series) {
+  ChartPanel chart{panel.label, axis, series.columns.front().numbers, {}, panel.bands};
+  auto next = series.columns.begin() + 1;
   for (const Curve& curve : panel.curves) {
-    auto& drawn =
-        chart.curves.emplace_back(ChartPanel::Curve{curve.legend, curve.style, (next++)->values});
-    if (!curve.envelope.empty()) drawn.envelope = (next++)->values;
+    Curve& drawn = chart.curves.emplace_back(Curve{curve.legend, curve.style, (next++)->numbers});
+    if (!curve.envelope.empty()) drawn.envelope = (next++)->numbers;
   }
   return chart;
 }
 
 }  // namespace
 
+std::string line_colour(std::size_t i) {
+  if (i == kTruthStyle) return "#999999";
+  return i == kReferenceStyle ? "black" : kColours[i % kColours.size()];
+}
+
+std::size_t line_dashes(std::size_t i) {
+  if (i == kTruthStyle) return 1;
+  return i == kReferenceStyle ? 2 : 1 + i / kColours.size();
+}
+
+std::string colour_within(std::span<const Colour> palette, double share) {
+  const double place = share * static_cast<double>(palette.size() - 1);
+  const auto low = std::min(static_cast<std::size_t>(place), palette.size() - 2);
+  Colour colour{};
+  for (std::size_t c = 0; c < colour.size(); ++c) {
+    colour[c] = static_cast<int>(std::lround(
+        std::lerp(palette[low][c], palette[low + 1][c], place - static_cast<double>(low))));
+  }
+  char text[8];
+  std::snprintf(text, sizeof text, "#%02x%02x%02x", colour[0], colour[1], colour[2]);
+  return text;
+}
+
+Frame thin(const Frame& frame, std::size_t buckets) {
+  const std::vector<double>& times = frame.columns.front().numbers;
+  if (times.size() <= 2 * buckets) return frame;
+  Frame thinned;
+  for (const Frame::Column& one : frame.columns) thinned.columns.push_back({one.name, one.units});
+  for (std::size_t b = 0; b < buckets; ++b) {
+    const std::size_t begin = b * times.size() / buckets;
+    const std::size_t end = (b + 1) * times.size() / buckets;
+    thinned.columns[0].numbers.push_back(times[begin]);
+    thinned.columns[0].numbers.push_back(times[(begin + end) / 2]);
+    for (std::size_t c = 1; c < frame.columns.size(); ++c) {
+      const std::span<const double> stretch(frame.columns[c].numbers.data() + begin, end - begin);
+      for (const double value : extremes(stretch)) thinned.columns[c].numbers.push_back(value);
+    }
+  }
+  return thinned;
+}
+
+void draw(const Figure& figure, const std::filesystem::path& directory) {
+  make_directory(directory / "data");
+  make_directory(directory / "figures");
+  for (const FigureData& data : figure.data) {
+    write_csv(data.frame, directory / "data" / data.name);
+  }
+  const std::string script = figure.name + ".gp";
+  write_text(directory / "figures" / script, script_of(figure));
+  run_gnuplot(directory / "figures", script);
+}
+
 void add_panels(const std::vector<Panel>& panels, const std::vector<double>& places,
                 Figure& figure) {
   if (panels.empty() || panels.front().curves.empty()) return;
   for (const Panel& panel : panels) {
-    const ThinnedSeries series = thinned(panel, places);
-    figure.data.push_back(data_of(panel.name + ".csv", figure.chart.x_label, series));
+    Frame series = thinned(panel, places, figure.chart.x_label);
     figure.chart.panels.push_back(chart_panel(panel, axis_of(panel), series));
+    figure.data.push_back({panel.name + ".csv", std::move(series)});
   }
   figure.chart.x_to = places.back();
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/output/csv_file.hpp"
+#include "analysis/output/frame.hpp"
 #include "analysis/output/prose.hpp"
 
 #include <array>
@@ -40,7 +40,7 @@ std::string colour_within(std::span<const Colour> palette, double share);
 struct Band {
   std::string legend;
   double lower = 0.0;
-  double upper = 0.0;  ///< may be infinite: no end above
+  double upper = 0.0;
 };
 
 /// A vertical axis.
@@ -68,7 +68,7 @@ struct ChartMarks {
   std::vector<double> width, height;  ///< of ellipses (diameters) and boxes
   std::vector<double> angle;          ///< [deg] of ellipses
   std::vector<std::string> fill;      ///< colour of each box
-  std::vector<std::string> text;      ///< within each box, beside each point; empty: none
+  std::vector<std::string> text;      ///< within each box; empty: none
   std::vector<Fact> facts;            ///< empty: the page shows none
 };
 
@@ -86,15 +86,18 @@ struct ChartStrips {
   std::string notes;   ///< heading of the notes
 };
 
+/// A curve of a panel.
+struct Curve {
+  std::string legend;          ///< curves of one legend are one cell: a page hides them together
+  std::size_t style = 0;       ///< for line_colour()
+  std::vector<double> values;  ///< one for each place on the common axis; NaN: a gap
+  /// Half the width of an envelope around zero at each place, such as three standard deviations;
+  /// empty: none.
+  std::vector<double> envelope = {};
+};
+
 /// Axes with curves, ready to draw.
 struct ChartPanel {
-  struct Curve {
-    std::string legend;          ///< curves of one legend are one cell: a page hides them together
-    std::size_t style = 0;       ///< for line_colour()
-    std::vector<double> values;  ///< one for each of `x`; NaN: a gap
-    std::vector<double> least = {}, greatest = {};  ///< ends of a bar at each value; empty: none
-    std::vector<double> envelope = {};              ///< as Curve::envelope
-  };
   std::string label;  ///< of the vertical axis, with unit
   ChartAxis axis;
   std::vector<double> x;  ///< increasing
@@ -114,8 +117,6 @@ struct Chart {
   std::string x_label = "time [s]";
   double x_from = 0.0, x_to = 0.0;
   std::vector<ChartPanel> panels;
-  bool x_logarithmic = false;
-  std::vector<double> x_ticks = {};  ///< in print; empty: round numbers
   /// Left end of the view before the reader zooms; NaN: x_from.
   double x_first = std::numeric_limits<double>::quiet_NaN();
   std::size_t columns = 1;  ///< side by side, where there is room; else one above the other
@@ -125,23 +126,16 @@ struct Chart {
   bool is_map = false;      ///< one scale in both directions, at any zoom
 };
 
-/// Series over one common time, short enough to draw.
-struct ThinnedSeries {
-  std::vector<double> times;  ///< [s]
-  std::vector<NamedSeries> series;
-};
+/// Leaves at most 2 x `buckets` values of each column: the least and the greatest of every stretch
+/// of the first one, which increases, in the order in which they occur, so no peak is lost. Of the
+/// first one it leaves the stretch's beginning and middle. A stretch without a number stays NaN. A
+/// short frame comes back as it is.
+Frame thin(const Frame& frame, std::size_t buckets);
 
-/// Leaves at most 2 x `buckets` values of each series: the least and the greatest of every stretch
-/// of time, in the order in which they occur, so no peak is lost. Times are those of the stretch's
-/// beginning and middle. A stretch without a number stays NaN. Short series come back as they are.
-ThinnedSeries thin(std::span<const double> times, const std::vector<NamedSeries>& series,
-                   std::size_t buckets);
-
-/// A file of the numbers behind a figure: headings with units, and rows.
+/// A file of the numbers behind a figure.
 struct FigureData {
   std::string name;  ///< of the file below data/, e.g. "anees.csv"
-  std::vector<std::string> headings;
-  std::vector<std::vector<double>> rows;
+  Frame frame = {};
 };
 
 /// A figure: one chart, drawn by gnuplot and by the page.
@@ -160,20 +154,6 @@ Figure figure_of(std::string_view name, const Values& values = {});
 
 /// Writes figures/<name>.gp and data/ below `directory` and draws figures/<name>.svg and .pdf.
 void draw(const Figure& figure, const std::filesystem::path& directory);
-
-/// The data file of curves over a first column called `heading`.
-FigureData data_of(const std::string& name, const std::string& heading,
-                   const ThinnedSeries& thinned);
-
-/// A curve of a panel.
-struct Curve {
-  std::string legend;          ///< empty: none
-  std::size_t style = 0;       ///< for line_colour()
-  std::vector<double> values;  ///< one for each place on the common axis
-  /// Half the width of an envelope around zero at each place, such as three standard deviations;
-  /// empty: none.
-  std::vector<double> envelope = {};
-};
 
 /// The vertical axis.
 enum class Scale {

@@ -10,12 +10,10 @@
 #include <array>
 #include <cerrno>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
-#include <fcntl.h>
-#include <fstream>
-#include <spawn.h>
+#include <string_view>
 #include <sys/wait.h>
-#include <unistd.h>
 
 namespace montecarta::analysis {
 namespace {
@@ -94,74 +92,39 @@ PrintLayout print_layout(const Chart& chart, double width, double legend_height)
 
 namespace {
 
-/// Working directory and log file of a process that is started.
-class SpawnActions {
- public:
-  SpawnActions(const std::filesystem::path& directory, const std::filesystem::path& log) {
-    posix_spawn_file_actions_init(&actions_);
-    posix_spawn_file_actions_addopen(&actions_, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_addopen(&actions_, STDOUT_FILENO, log.c_str(),
-                                     O_WRONLY | O_CREAT | O_TRUNC, 0644);
-    posix_spawn_file_actions_adddup2(&actions_, STDOUT_FILENO, STDERR_FILENO);
-    posix_spawn_file_actions_addchdir_np(&actions_, directory.c_str());
-  }
-  ~SpawnActions() { posix_spawn_file_actions_destroy(&actions_); }
-  SpawnActions(const SpawnActions&) = delete;
-  SpawnActions& operator=(const SpawnActions&) = delete;
-  const posix_spawn_file_actions_t* get() const { return &actions_; }
-
- private:
-  posix_spawn_file_actions_t actions_{};
-};
-
-/// The last line that is not empty.
-std::string last_lines(const std::filesystem::path& log) {
-  std::ifstream file(log);
-  std::string last;
-  for (std::string line; std::getline(file, line);) {
-    if (line.find_first_not_of(" \t^") != std::string::npos) last = line;
-  }
-  return last.empty() ? "it says nothing" : last;
-}
-
-int wait_for(pid_t process) {
-  int status = 0;
-  while (waitpid(process, &status, 0) < 0 && errno == EINTR) {
-  }
-  return status;
+std::string shell_quoted(const std::string& word) {
+  return "'" + replaced(word, "'", "'\\''") + "'";
 }
 
 }  // namespace
 
 void run_gnuplot(const std::filesystem::path& directory, const std::string& name,
                  const std::string& program) {
-  const auto log = std::filesystem::absolute(directory) / (name + ".log");
-  const SpawnActions actions(directory, log);
-  std::string words[] = {program, name};
-  char* const arguments[] = {words[0].data(), words[1].data(), nullptr};
-  pid_t process = 0;
-  const int error =
-      posix_spawnp(&process, program.c_str(), actions.get(), nullptr, arguments, environ);
-  if (error == ENOENT) {
+  const std::string command = "cd " + shell_quoted(directory.string()) + " && exec " +
+                              shell_quoted(program) + " " + shell_quoted(name) + " </dev/null 2>&1";
+  FILE* const output = ::popen(command.c_str(), "re");
+  if (output == nullptr)
+    throw RunError(program + ": cannot be started (" + std::strerror(errno) + ")");
+  std::string last = "it says nothing";  // the last line that is not empty
+  std::array<char, 512> line{};
+  while (std::fgets(line.data(), line.size(), output) != nullptr) {
+    const std::string_view said(line.data());
+    if (said.find_first_not_of(" \t^\n") != said.npos) last = said.substr(0, said.find('\n'));
+  }
+  const int status = ::pclose(output);
+  constexpr int kNotFound = 127;  // says the shell
+  if (WIFEXITED(status) && WEXITSTATUS(status) == kNotFound) {
     throw StudyError(program +
                      ": not found (it draws the figures): install it, on Debian with 'apt-get "
                      "install gnuplot-nox'");
   }
-  if (error != 0) throw RunError(program + ": cannot be started (" + std::strerror(error) + ")");
-  const int status = wait_for(process);
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
-    throw RunError((directory / name).string() + ": gnuplot failed (" + last_lines(log) +
-                   "): look at " + log.string());
-  }
-  std::filesystem::remove(log);
+  if (status == 0) return;
+  throw RunError((directory / name).string() + ": gnuplot failed (" + last +
+                 "): draw it again by gnuplot, and look at what it says");
 }
 
 std::string gnuplot_quoted(const std::string& text) {
-  std::string quoted = "'";
-  for (const char c : visible(text)) {
-    quoted += c == '\'' ? std::string("''") : std::string(1, c);
-  }
-  return quoted + "'";
+  return "'" + replaced(visible(text), "'", "''") + "'";
 }
 
 namespace {
@@ -206,22 +169,9 @@ class PanelWriter {
     plot({&x, &lower, &upper}, "1:2:3", band_style());
   }
 
-  void add_curve(std::size_t i) {
-    const ChartPanel::Curve& curve = panel_.curves[i];
+  void add(const Curve& curve) {
     if (!curve.envelope.empty()) add_envelope(curve);
-    if (curve.least.empty()) {
-      plot({&panel_.x, &curve.values}, "1:2", curve_style(curve.style));
-      return;
-    }
-    // Bars of neighbouring curves must not cover each other.
-    const auto bars = std::ranges::count_if(
-        panel_.curves, [](const ChartPanel::Curve& one) { return !one.least.empty(); });
-    const double place = static_cast<double>(i) - 0.5 * static_cast<double>(bars - 1);
-    std::vector<double> x = panel_.x;
-    for (double& at : x) at *= 1.0 + 0.03 * place;
-    plot({&x, &curve.values}, "1:2", curve_style(curve.style));
-    plot({&x, &curve.values, &curve.least, &curve.greatest}, "1:2:3:4",
-         "yerrorbars pointtype 7 pointsize 0.5 " + line_style(curve.style));
+    plot({&panel_.x, &curve.values}, "1:2", curve_style(curve.style));
   }
 
   void add(const ChartMarks& marks) {
@@ -234,7 +184,7 @@ class PanelWriter {
   PanelPlots result() const { return {numbers_, commands_.empty() ? "NaN notitle" : commands_}; }
 
  private:
-  void add_envelope(const ChartPanel::Curve& curve) {
+  void add_envelope(const Curve& curve) {
     std::vector<double> below = curve.envelope;
     for (double& end : below) end = -end;
     plot({&panel_.x, &below, &curve.envelope}, "1:2:3",
@@ -309,7 +259,7 @@ PanelPlots panel_plots(const Chart& chart, std::size_t panel) {
   PanelWriter writer(chart, panel);
   const ChartPanel& drawn = chart.panels[panel];
   for (const Band& band : drawn.bands) writer.add(band);
-  for (std::size_t i = 0; i < drawn.curves.size(); ++i) writer.add_curve(i);
+  for (const Curve& curve : drawn.curves) writer.add(curve);
   for (const ChartMarks& marks : drawn.marks) writer.add(marks);
   if (!drawn.strips.rows.empty()) writer.add(strip_boxes(drawn, chart.x_to));
   return writer.result();
@@ -348,36 +298,12 @@ std::string ticks(const char* axis, const std::vector<std::string>& names) {
   return script + ")\n";
 }
 
-std::string ticks_at(const std::vector<double>& places) {
-  std::string at;
-  for (const double place : places) at += (at.empty() ? "" : ",") + command_number(place);
-  return "set xtics nomirror (" + at + ")\n";
-}
-
-/// Ticks of a logarithmic axis: 1, 2 and 5 of each decade, or only 1 of many decades.
-std::string logarithmic_ticks(double from, double to) {
-  expect(from > 0.0 && to < 1e200, "a logarithmic axis has positive ends");
-  const bool is_long = to > 2000.0 * from;
-  std::string at;
-  for (double decade = std::pow(10.0, std::floor(std::log10(from))); decade <= to; decade *= 10.0) {
-    for (const double step : {1.0, 2.0, 5.0}) {
-      if (is_long && step > 1.0) continue;
-      at += (at.empty() ? "" : ",") + readable(step * decade, 1);
-    }
-  }
-  return "set xtics nomirror (" + at + ")\n";
-}
-
 /// One label for all columns stands below the drawing (common_label()).
 std::string horizontal_axis(const Chart& chart, const ChartPanel& panel, const PanelBox& box) {
   const std::string label = box.is_alone_in_row
                                 ? "set xlabel " + gnuplot_quoted(chart.x_label) + " offset 0,0.4\n"
                                 : "unset xlabel\n";
-  return std::string(chart.x_logarithmic ? "set" : "unset") + " logscale x\n" +
-         (!chart.x_ticks.empty() ? ticks_at(chart.x_ticks)
-          : chart.x_logarithmic  ? logarithmic_ticks(box.x_from, box.x_to)
-                                 : ticks("x", panel.x_names)) +
-         range("x", box.x_from, box.x_to) +
+  return "unset logscale x\n" + ticks("x", panel.x_names) + range("x", box.x_from, box.x_to) +
          (box.is_lowest ? "set format x '%h'\n" + label : "set format x ''\nunset xlabel\n");
 }
 
@@ -394,9 +320,8 @@ double upper_end(const ChartPanel& panel) {
   const auto include = [&](double value) {
     if (std::isfinite(value)) greatest = std::max(greatest, value);
   };
-  for (const ChartPanel::Curve& curve : panel.curves) {
+  for (const Curve& curve : panel.curves) {
     std::ranges::for_each(curve.values, include);
-    std::ranges::for_each(curve.greatest, include);
   }
   for (const Band& band : panel.bands) include(band.upper);
   return greatest > panel.axis.low ? 1.05 * greatest : panel.axis.low + 1.0;
@@ -452,33 +377,24 @@ std::string place(const PanelBox& box, double width, double height) {
          margin("t", 1.0 - box.top / height) + margin("b", 1.0 - box.bottom / height);
 }
 
-/// Words within boxes; of points beside them, on the side where there is room, above and below by
-/// turns from the lowest point up so that neighbours keep apart.
-std::string texts(const Chart& chart, const ChartPanel& panel) {
+/// Words within boxes, from the lowest one up.
+std::string texts(const ChartPanel& panel) {
   struct Text {
     double x, y;
     std::string words;
-    bool is_within;
   };
   std::vector<Text> all;
   for (const ChartMarks& marks : panel.marks) {
     for (std::size_t i = 0; i < marks.text.size(); ++i) {
       if (!std::isfinite(marks.x[i]) || !std::isfinite(marks.y[i])) continue;
-      all.push_back({marks.x[i], marks.y[i], marks.text[i], marks.shape == Shape::boxes});
+      all.push_back({marks.x[i], marks.y[i], marks.text[i]});
     }
   }
   std::ranges::stable_sort(all, {}, &Text::y);
-  const double middle = chart.x_logarithmic ? std::sqrt(chart.x_from * chart.x_to)
-                                            : 0.5 * (chart.x_from + chart.x_to);
   std::string script;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const auto& [x, y, words, is_within] = all[i];
-    const bool left = x > middle;
+  for (const auto& [x, y, words] : all) {
     script += "set label " + gnuplot_quoted(words) + " at " + command_number(x) + "," +
-              command_number(y) + " noenhanced front " +
-              (is_within ? "center textcolor rgb '#111111'\n"
-                         : std::string(left ? "right offset -0.8," : "left offset 0.8,") +
-                               (i % 2 == 0 ? "-0.5\n" : "0.5\n"));
+              command_number(y) + " noenhanced front center textcolor rgb '#111111'\n";
   }
   return script;
 }
@@ -555,7 +471,7 @@ GnuplotChart gnuplot_chart(const Chart& chart, std::size_t width) {
     if (k % layout.views == 0) drawn.numbers += plots.numbers;
     drawn.commands += place(layout.boxes[k], w, layout.height) +
                       horizontal_axis(chart, panel, layout.boxes[k]) +
-                      vertical_axis(panel, layout.boxes[k]) + texts(chart, panel) +
+                      vertical_axis(panel, layout.boxes[k]) + texts(panel) +
                       (k == 0 ? common_label(chart, layout) + key : "unset object\n") + "plot " +
                       plots.commands + "\n";
   }

@@ -99,6 +99,13 @@ std::string prose(std::string_view name, std::string_view key, const Values& val
   return all.front();
 }
 
+std::string replaced(std::string text, std::string_view from, std::string_view to) {
+  for (std::size_t at = 0; (at = text.find(from, at)) != text.npos; at += to.size()) {
+    text.replace(at, from.size(), to);
+  }
+  return text;
+}
+
 std::string_view file_of_prose(std::string_view key) {
   std::vector<std::string_view> names;
   for (const auto& [name, texts] : all_prose()) {

@@ -37,6 +37,9 @@ std::vector<std::string> paragraphs(std::string_view name, std::string_view key,
 /// The single paragraph of a key that has one; otherwise like paragraphs().
 std::string prose(std::string_view name, std::string_view key, const Values& values = {});
 
+/// Every `from` in a text replaced.
+std::string replaced(std::string text, std::string_view from, std::string_view to);
+
 /// The name of the file that has `## key`, of which there is one.
 std::string_view file_of_prose(std::string_view key);
 

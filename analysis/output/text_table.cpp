@@ -21,26 +21,6 @@ std::vector<std::size_t> widths_of(const std::vector<TableRow>& rows) {
   return widths;
 }
 
-}  // namespace
-
-std::string aligned(const std::vector<TableRow>& rows, std::size_t indent,
-                    const std::vector<Align>& alignment, std::size_t gap) {
-  const std::vector<std::size_t> widths = widths_of(rows);
-  std::string text;
-  for (const TableRow& row : rows) {
-    std::string line(indent, ' ');
-    for (std::size_t c = 0; c < row.size(); ++c) {
-      const std::string space(widths[c] - row[c].size(), ' ');
-      const bool is_right = c < alignment.size() && alignment[c] == Align::right;
-      line += (is_right ? space + row[c] : row[c] + space) + std::string(gap, ' ');
-    }
-    text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
-  }
-  return text;
-}
-
-namespace {
-
 constexpr std::size_t kNarrowestText = 24;  // a column of sentences
 
 std::size_t longest_word(const std::string& text) {
@@ -138,6 +118,22 @@ std::vector<TableRow> lines_of_row(const TableRow& row, const std::vector<std::s
 
 }  // namespace
 
+std::string aligned(const std::vector<TableRow>& rows, std::size_t indent,
+                    const std::vector<Align>& alignment, std::size_t gap) {
+  const std::vector<std::size_t> widths = widths_of(rows);
+  std::string text;
+  for (const TableRow& row : rows) {
+    std::string line(indent, ' ');
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      const std::string space(widths[c] - row[c].size(), ' ');
+      const bool is_right = c < alignment.size() && alignment[c] == Align::right;
+      line += (is_right ? space + row[c] : row[c] + space) + std::string(gap, ' ');
+    }
+    text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
+  }
+  return text;
+}
+
 void print_table(std::ostream& out, const TextTable& table, std::size_t width) {
   if (table.headings.empty()) return;
   TableRow headings;
@@ -175,10 +171,7 @@ void TextTable::add(const std::vector<Entry>& row) {
   rows.push_back(std::move(texts));
 }
 
-bool Section::has_content() const {
-  const auto is_note = [](const Block& block) { return std::holds_alternative<Note>(block); };
-  return !figures.empty() || !std::ranges::all_of(blocks, is_note);
-}
+bool Section::has_content() const { return !figures.empty() || all<Note>().size() < blocks.size(); }
 
 void Section::add(const std::string& table_name, const TextTable& table) {
   if (!table.rows.empty()) blocks.emplace_back(Table{table_name, table});
@@ -199,6 +192,39 @@ Section section_of(std::string_view name, const Values& values) {
   Section section{std::string(name), texts.front()};
   if (texts.size() > 1) section.summary = texts[1];
   return section;
+}
+
+const std::vector<Place>& reading_order() {
+  static const std::vector<Place> order = {
+      {"title", {}, Section::Shown::open},
+      {"cards", {}, Section::Shown::open},
+      {"drive", {}, Section::Shown::open},
+      {"references", {"reference_error"}, Section::Shown::open},
+      {"nees", {"anees"}, Section::Shown::open},
+      {"replay", {}, Section::Shown::open},
+      {"errors", {"rmse", "error_envelopes"}, Section::Shown::open},
+      {"verdict"},
+      {"failures"},
+      {"components"},
+      {"paths", {"paths"}},
+      {"survival", {"survival"}},
+      {"map_errors"},
+      {"map_size", {"map_size"}},
+      {"joint_nees", {"joint_nees"}},
+      {"observability", {"observability"}},
+      {"smoother"},
+      {"mismatch", {"mismatch"}},
+      {"error_anatomy", {"bias"}},
+      {"innovations", {"nis", "whiteness"}},
+      {"calibration", {"nees_quantiles", "calibration", "ranks"}},
+      {"diversity", {"diversity", "ess", "ancestry"}},
+      {"association"},
+      {"proper_scores"},
+      {"comparison"},
+      {"families"},
+      {"consistency", {"anees_parts"}},
+  };
+  return order;
 }
 
 }  // namespace montecarta::analysis

@@ -78,6 +78,15 @@ struct Section {
   std::string summary = {};          ///< one line beside the heading: the result in short
   Shown shown = Shown::folded;       ///< on a page, before the reader opens it
 
+  /// Its blocks of one kind.
+  template <class Kind>
+  std::vector<Kind> all() const {
+    std::vector<Kind> found;
+    for (const Block& block : blocks) {
+      if (const Kind* one = std::get_if<Kind>(&block)) found.push_back(*one);
+    }
+    return found;
+  }
   /// Whether there is anything except notes on missing data.
   bool has_content() const;
 
@@ -92,5 +101,16 @@ struct Section {
 /// A section with the texts below `## section` in the file of prose `name`: the title and, unless
 /// the caller sets it, the summary.
 Section section_of(std::string_view name, const Values& values = {});
+
+/// Where a section stands, with the figures of its subject.
+struct Place {
+  std::string section;
+  std::vector<std::string> figures = {};
+  Section::Shown shown = Section::Shown::folded;  ///< on the page
+};
+
+/// From the first section to the last, on the page and on a terminal. Sections without a place come
+/// behind them.
+const std::vector<Place>& reading_order();
 
 }  // namespace montecarta::analysis

@@ -30,12 +30,10 @@ void add_style(std::size_t style, Json& json) {
   json["dash"] = line_dashes(style);
 }
 
-Json json_of(const ChartPanel::Curve& curve) {
+Json json_of(const Curve& curve) {
   Json json = {{"legend", curve.legend}};
   add_style(curve.style, json);
   json["y"] = rounded(curve.values);
-  add_if_any("least", curve.least, json);
-  add_if_any("greatest", curve.greatest, json);
   add_if_any("envelope", curve.envelope, json);
   return json;
 }
@@ -101,6 +99,24 @@ Json json_of(const ChartPanel& panel, const std::vector<double>* x_above) {
   return json;
 }
 
+/// A browser that reads this asks nobody for anything, not even for an icon.
+constexpr const char* kNoNetwork =
+    "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
+    "style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:\">\n"
+    "<link rel=\"icon\" href=\"data:,\">\n";
+
+/// Verdicts and failures are seen at a glance; the word itself says the same without the colour.
+std::string class_of(const std::string& text, Align align) {
+  constexpr std::size_t kLong = 24;  // characters: more are broken into lines on a narrow page
+  std::string names = align == Align::right ? "right" : text.size() > kLong ? "long" : "";
+  const bool bad = text.starts_with("optimistic") || text.starts_with("inconsistent") ||
+                   text.starts_with("better in no") || text.find("FAILED") != std::string::npos;
+  if (bad) names += " bad";
+  const bool good = text.starts_with("consistent within") || text.starts_with("better in every");
+  if (good) names += " good";
+  return names.empty() ? "" : " class=\"" + names + "\"";
+}
+
 }  // namespace
 
 Json rounded(double value, int digits) {
@@ -122,19 +138,14 @@ Json rounded(const std::vector<double>& values, int digits) {
 }
 
 std::string script_text(const Json& json) {
-  std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
   // "<" could end the script, and is found within texts only.
-  for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos;) {
-    text.replace(at, 1, "\\u003c");
-  }
-  return text;
+  return replaced(json.dump(-1, ' ', false, Json::error_handler_t::replace), "<", "\\u003c");
 }
 
 std::string chart_json(const Chart& chart) {
   Json json = {
       {"x_label", chart.x_label}, {"x_from", rounded(chart.x_from)}, {"x_to", rounded(chart.x_to)}};
   if (!std::isnan(chart.x_first)) json["x_first"] = rounded(chart.x_first);
-  if (chart.x_logarithmic) json["x_logarithmic"] = true;
   if (chart.columns > 1) {
     json["columns"] = chart.columns;
     json["least"] = chart.least;
@@ -150,55 +161,9 @@ std::string chart_json(const Chart& chart) {
   return script_text(json);
 }
 
-namespace {
-
-/// A browser that reads this asks nobody for anything, not even for an icon.
-constexpr const char* kNoNetwork =
-    "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
-    "style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:\">\n"
-    "<link rel=\"icon\" href=\"data:,\">\n";
-
-/// Verdicts and failures are seen at a glance; the word itself says the same without the colour.
-std::string class_of(const std::string& text, Align align) {
-  constexpr std::size_t kLong = 24;  // characters: more are broken into lines on a narrow page
-  std::string names = align == Align::right ? "right" : text.size() > kLong ? "long" : "";
-  const bool bad = text.starts_with("optimistic") || text.starts_with("inconsistent") ||
-                   text.starts_with("better in no") || text.find("FAILED") != std::string::npos;
-  if (bad) names += " bad";
-  const bool good = text.starts_with("consistent within") || text.starts_with("better in every");
-  if (good) names += " good";
-  return names.empty() ? "" : " class=\"" + names + "\"";
-}
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  for (std::size_t at = 0; (at = text.find(from, at)) != text.npos; at += to.size()) {
-    text.replace(at, from.size(), to);
-  }
-  return text;
-}
-
-}  // namespace
-
 std::string html_escape(const std::string& text) {
-  std::string html;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        html += "&amp;";
-        break;
-      case '<':
-        html += "&lt;";
-        break;
-      case '>':
-        html += "&gt;";
-        break;
-      case '"':
-        html += "&quot;";
-        break;
-      default:
-        html += c;
-    }
-  }
+  std::string html = replaced(replaced(text, "&", "&amp;"), "<", "&lt;");
+  html = replaced(replaced(html, ">", "&gt;"), "\"", "&quot;");
   html = replaced(html, " %", "&#160;%");  // a number and its percent sign stay together
   return replaced(html, "+-", "&plusmn;");
 }

@@ -39,7 +39,7 @@ std::string links_to_numbers(const Figure& figure) {
   std::string links;
   std::size_t count = 0;
   for (const FigureData& data : figure.data) {
-    if (data.rows.empty()) continue;
+    if (data.frame.rows() == 0) continue;
     const std::string name = html_escape(data.name);
     links += " <a href=\"data/" + name + "\">" + name + "</a>";
     ++count;
@@ -95,9 +95,7 @@ struct HtmlOf {
 
 std::vector<std::string> notes_of(const Section& section) {
   std::vector<std::string> notes;
-  for (const Section::Block& block : section.blocks) {
-    if (const auto* note = std::get_if<Section::Note>(&block)) notes.push_back(note->text);
-  }
+  for (const auto& note : section.all<Section::Note>()) notes.push_back(note.text);
   return notes;
 }
 
@@ -119,16 +117,6 @@ std::string html_of(const Section& section, const fs::path& directory) {
   if (is_open) return begin + body + "</section>\n";
   return begin + "<details class=\"folded\"><summary>" + folded_heading(section) + "</summary>\n" +
          body + "</details>\n</section>\n";
-}
-
-/// Its tables, for a LaTeX document.
-void write_latex_tables(const StudyAnalysis& study, const Section& section,
-                        const fs::path& directory) {
-  for (const auto& block : section.blocks) {
-    const auto* table = std::get_if<Section::Table>(&block);
-    if (table == nullptr) continue;
-    write_text(directory / (table->name + ".tex"), latex_table(study, table->table));
-  }
 }
 
 /// Failures of a study that fails a thousand times are not worth a thousand lines.
@@ -172,9 +160,8 @@ std::string markdown_figure(const Figure& figure) {
 
 std::string markdown_section(const Section& section) {
   std::string tables;
-  for (const Section::Block& block : section.blocks) {
-    const auto* table = std::get_if<Section::Table>(&block);
-    if (table != nullptr) tables += "\n" + markdown_table(table->table);
+  for (const auto& table : section.all<Section::Table>()) {
+    tables += "\n" + markdown_table(table.table);
   }
   const std::string heading =
       section.title.empty() ? "" : "\n## " + markdown_escape(section.title) + "\n";
@@ -192,6 +179,28 @@ std::string markdown_leading_figure(const std::vector<Section>& sections) {
   return "";
 }
 
+std::string details(const std::string& summary, const std::string& content) {
+  return "<details><summary>" + summary + "</summary>" + content + "</details>\n";
+}
+
+/// How many of its rows are better, and how many worse.
+std::string comparison_summary(const Comparisons& all) {
+  std::size_t better = 0, worse = 0;
+  for (const CellComparison& row : all.rows) {
+    const std::string verdict = row.verdict(all.level);
+    better += verdict.starts_with("better") ? 1 : 0;
+    worse += verdict.starts_with("worse") ? 1 : 0;
+  }
+  return std::to_string(all.rows.size()) + " comparisons, better in " + std::to_string(better) +
+         ", worse in " + std::to_string(worse);
+}
+
+std::string title_line(const StudyAnalysis& study) {
+  return html_escape(study.study_name) + " &middot; " + std::to_string(study.runs_here) + " of " +
+         std::to_string(study.study_runs) + " runs &middot; " + study.scans_text() +
+         " &middot; seed " + std::to_string(study.seed) + " &middot; " + html_escape(study.file);
+}
+
 }  // namespace
 
 void write_page(const StudyAnalysis& study, const std::vector<Section>& sections,
@@ -199,7 +208,9 @@ void write_page(const StudyAnalysis& study, const std::vector<Section>& sections
   make_directory(directory / "tables");
   std::string body;
   for (const Section& section : sections) {
-    write_latex_tables(study, section, directory / "tables");
+    for (const auto& table : section.all<Section::Table>()) {
+      write_text(directory / "tables" / (table.name + ".tex"), latex_table(study, table.table));
+    }
     body += html_of(section, directory);
   }
   write_text(directory / "index.html", html_page(study.study_name + ": report", body));
@@ -230,32 +241,6 @@ std::string markdown_page(const StudyAnalysis& study, const std::vector<Section>
   }
   return page + figure;
 }
-
-namespace {
-
-std::string details(const std::string& summary, const std::string& content) {
-  return "<details><summary>" + summary + "</summary>" + content + "</details>\n";
-}
-
-/// How many of its rows are better, and how many worse.
-std::string comparison_summary(const Comparisons& all) {
-  std::size_t better = 0, worse = 0;
-  for (const CellComparison& row : all.rows) {
-    const std::string verdict = row.verdict(all.level);
-    better += verdict.starts_with("better") ? 1 : 0;
-    worse += verdict.starts_with("worse") ? 1 : 0;
-  }
-  return std::to_string(all.rows.size()) + " comparisons, better in " + std::to_string(better) +
-         ", worse in " + std::to_string(worse);
-}
-
-std::string title_line(const StudyAnalysis& study) {
-  return html_escape(study.study_name) + " &middot; " + std::to_string(study.runs_here) + " of " +
-         std::to_string(study.study_runs) + " runs &middot; " + study.scans_text() +
-         " &middot; seed " + std::to_string(study.seed) + " &middot; " + html_escape(study.file);
-}
-
-}  // namespace
 
 std::string studied_sentence(const StudyAnalysis& study) {
   const std::string n = std::to_string(study.cells.size());
@@ -293,10 +278,7 @@ Section failure_section(const StudyAnalysis& study) {
                     std::to_string(study.runs_here * study.cells.size()) +
                     " runs ended early, with step and reason";
   section.add("failures", failure_table(study));
-  section.add(std::vector<std::string>{
-      "These runs ended early and are left out of everything else; the step counts from 0. "
-      "If they failed because the filter diverged, what is left looks better than the "
-      "filter is."});
+  section.add(paragraphs("cards", "failures"));
   return section;
 }
 

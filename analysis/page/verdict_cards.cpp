@@ -53,14 +53,15 @@ struct Sparkline {
   }
   double x(double time) const { return kSparkLeft + kSparkWidth * time / std::max(duration, 1e-9); }
 
-  std::string path(const ThinnedSeries& thinned, double dimension) const {
+  std::string path(const Frame& thinned, double dimension) const {
     std::string path;
     bool is_drawn = false;
-    for (std::size_t i = 0; i < thinned.times.size(); ++i) {
-      const double ratio = thinned.series.front().values[i] / dimension;
+    for (std::size_t i = 0; i < thinned.rows(); ++i) {
+      const double ratio = thinned.columns[1].numbers[i] / dimension;
       const bool is_known = ratio > 0.0;
       if (is_known) {
-        path += (is_drawn ? "L" : "M") + pixels(x(thinned.times[i])) + " " + pixels(y(ratio));
+        path += (is_drawn ? "L" : "M") + pixels(x(thinned.columns[0].numbers[i])) + " " +
+                pixels(y(ratio));
       }
       is_drawn = is_known;
     }
@@ -129,7 +130,8 @@ std::string spark_html(const StudyAnalysis& study, const CellAnalysis& cell, std
   constexpr std::size_t kSparkColumns = 80;
   const Sparkline line{highest, study.times.back()};
   const auto dimension = static_cast<double>(series->dimension);
-  const ThinnedSeries thinned = thin(study.times, {{"anees", "1", series->average}}, kSparkColumns);
+  const Frame thinned =
+      thin({{{"time", "s", study.times}, {"anees", "1", series->average}}}, kSparkColumns);
   const Interval bounds = nees_bounds(cell.complete, series->dimension, study.level);
   const std::string bars = line.bars(cell.verdict);
   return html_explained(

@@ -59,35 +59,34 @@ double mean_not_shown(double margin, double n, double level) {
   return room <= 0.0 ? 1.0 : t_p_value(room, n - 1.0);
 }
 
-void expect_scans_of_a_run(const NeesTest& test) {
-  if (test.scans > 0 && test.scans <= kMostPlannedScans) return;
-  throw StudyError("scans = " + std::to_string(test.scans) +
-                   " (a run has 1 to 100000 independent scans): give what a run has");
+void expect_number(bool is_good, const char* name, double value, const char* advice) {
+  if (is_good) return;
+  throw StudyError(std::string(name) + " = " + std::to_string(value) + " " + advice);
 }
 
 void expect_ratio(double ratio) {
-  if (ratio > 0.0 && std::isfinite(ratio) && ratio != 1.0) return;
-  throw StudyError("ratio = " + std::to_string(ratio) +
-                   " (how many times too large or too small the NEES is, so neither 1 nor 0): "
-                   "give for instance 1.5 or 0.67");
+  expect_number(ratio > 0.0 && std::isfinite(ratio) && ratio != 1.0, "ratio", ratio,
+                "(how many times too large or too small the NEES is, so neither 1 nor 0): give for "
+                "instance 1.5 or 0.67");
 }
 
 void expect_power(double power) {
-  if (power > 0.0 && power < 1.0) return;
-  throw StudyError("power = " + std::to_string(power) +
-                   " (a probability strictly between 0 and 1): give for instance 0.9");
+  expect_number(power > 0.0 && power < 1.0, "power", power,
+                "(a probability strictly between 0 and 1): give for instance 0.9");
 }
 
 void expect_margin(double within) {
-  if (within > 1.0 && std::isfinite(within)) return;
-  throw StudyError("within = " + std::to_string(within) +
-                   " (a ratio above 1 is needed): give for instance 1.1");
+  expect_number(within > 1.0 && std::isfinite(within), "within", within,
+                "(a ratio above 1 is needed): give for instance 1.1");
 }
 
 }  // namespace
 
 NeesPlan::NeesPlan(const NeesTest& test) : test_(test) {
-  expect_scans_of_a_run(test);
+  if (test.scans == 0 || test.scans > kMostPlannedScans) {
+    throw StudyError("scans = " + std::to_string(test.scans) +
+                     " (a run has 1 to 100000 independent scans): give what a run has");
+  }
   nees_bounds(1, test.dimension, test.level);  // refuses a wrong dimension or level
 }
 

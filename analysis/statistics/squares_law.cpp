@@ -50,6 +50,14 @@ std::vector<double> padded(std::span<const double> rows, std::size_t runs, std::
   return all;
 }
 
+/// The normal score with the given probability of its upper or lower tail, whichever is smaller.
+double score_of_tails(double lower, double upper) {
+  const boost::math::normal normal;
+  const double tail = std::min(lower, upper);
+  const double score = tail > 0.0 ? -boost::math::quantile(normal, tail) : kFarthestScore;
+  return lower < upper ? -std::min(score, kFarthestScore) : std::min(score, kFarthestScore);
+}
+
 }  // namespace
 
 void RunProducts::add(std::span<const double> rows, std::size_t length) {
@@ -130,18 +138,6 @@ Traces traces_of_constant_errors(double terms, double largest) {
   const double second = std::max(terms, largest);
   return {.first = terms, .second = second, .third = second * second / terms};
 }
-
-namespace {
-
-/// The normal score with the given probability of its upper or lower tail, whichever is smaller.
-double score_of_tails(double lower, double upper) {
-  const boost::math::normal normal;
-  const double tail = std::min(lower, upper);
-  const double score = tail > 0.0 ? -boost::math::quantile(normal, tail) : kFarthestScore;
-  return lower < upper ? -std::min(score, kFarthestScore) : std::min(score, kFarthestScore);
-}
-
-}  // namespace
 
 SquaresLaw::SquaresLaw(const Traces& traces, double runs) : freedom_(traces.freedom) {
   const double t1 = traces.first, t2 = traces.second, t3 = traces.third;

@@ -7,6 +7,7 @@
 #include <boost/math/distributions/poisson.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -165,21 +166,9 @@ double p_value(const Uniformity& test) {
 }
 
 std::string in_words(Calibration verdict) {
-  switch (verdict) {
-    case Calibration::calibrated:
-      return "no fault found";
-    case Calibration::too_narrow:
-      return "too narrow";
-    case Calibration::too_wide:
-      return "too wide";
-    case Calibration::shifted:
-      return "shifted";
-    case Calibration::wrong_shape:
-      return "wrong shape";
-    case Calibration::untested:
-      break;
-  }
-  return "too few runs";
+  constexpr std::array kWords = {"too few runs", "no fault found", "too narrow",
+                                 "too wide",     "shifted",        "wrong shape"};
+  return kWords.at(static_cast<std::size_t>(verdict));
 }
 
 }  // namespace montecarta::analysis

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/metric.hpp"
-#include "analysis/metrics/reference_report.hpp"
-#include "analysis/metrics/reference_scores.hpp"
+#include "analysis/metrics/references.hpp"
 #include "analysis/metrics/verdict_table.hpp"
 #include "analysis/output/csv_file.hpp"
 #include "analysis/tables/tables.hpp"
@@ -10,17 +9,24 @@
 namespace montecarta::analysis {
 namespace {
 
-void write_number(const h5::Handle& group, const NamedNumber& number) {
-  const auto dataset = h5::create_dataset(group, number.name, Element::f64, {1});
-  h5::write(dataset, Element::f64, &number.value);
-  h5::put_text(dataset, "units", number.units);
+void write_row(const h5::Handle& group, const Frame::Row& row) {
+  for (const Frame::Entry& entry : row) {
+    const auto dataset = h5::create_dataset(group, entry.name, Element::f64, {1});
+    h5::write(dataset, Element::f64, &entry.number);
+    h5::put_text(dataset, "units", entry.units);
+  }
 }
 
-void write_series(const h5::Handle& group, const NamedSeries& series, const h5::Handle& time) {
-  const auto dataset = h5::create_dataset(group, series.name, Element::f64, {series.values.size()});
-  h5::write(dataset, Element::f64, series.values.data());
-  h5::put_text(dataset, "units", series.units);
-  h5::attach_scale(dataset, time, 0);
+/// With the scale of its rows, if they have one.
+void write_columns(const h5::Handle& group, const std::vector<Frame::Column>& columns,
+                   const h5::Handle* scale) {
+  for (const Frame::Column& column : columns) {
+    const auto dataset =
+        h5::create_dataset(group, column.name, Element::f64, {column.numbers.size()});
+    h5::write(dataset, Element::f64, column.numbers.data());
+    h5::put_text(dataset, "units", column.units);
+    if (scale != nullptr) h5::attach_scale(dataset, *scale, 0);
+  }
 }
 
 /// Scales over which series of a cell go.
@@ -44,22 +50,23 @@ void write_references(const h5::Handle& cell_group, const StudyAnalysis& study,
   const auto references = h5::create_group(cell_group, "references");
   for (std::size_t r = 0; r < cell.get<ReferenceAnalyses>().size(); ++r) {
     const auto group = h5::create_group(references, study.references[r].name);
-    for (const NamedNumber& number : reference_numbers(cell, r)) write_number(group, number);
+    write_row(group, reference_numbers(cell, r));
     if (cell.get<ReferenceAnalyses>()[r].error_over_time.empty()) continue;
     if (study.references[r].times.empty()) continue;
-    write_series(group, {"error_over_time", "m", cell.get<ReferenceAnalyses>()[r].error_over_time},
-                 times.fixes[r]);
+    write_columns(group,
+                  {{"error_over_time", "m", cell.get<ReferenceAnalyses>()[r].error_over_time}},
+                  &times.fixes[r]);
   }
 }
 
 void write_bound(const h5::Handle& file, const CramerRaoBound& bound, const h5::Handle& time) {
   if (bound.empty()) return;
   const auto group = h5::create_group(file, "bound");
-  write_series(group, {"position", "m", bound.position}, time);
-  write_series(group, {"heading", "rad", bound.heading}, time);
-  write_number(group, {"map", "m", bound.map});
-  write_number(group, {"runs", "1", static_cast<double>(bound.runs)});
-  write_number(group, {"is_bound", "1", bound.is_bound ? 1.0 : 0.0});
+  write_columns(group, {{"position", "m", bound.position}, {"heading", "rad", bound.heading}},
+                &time);
+  write_row(group, {{"map", "m", bound.map},
+                    {"runs", "1", static_cast<double>(bound.runs)},
+                    {"is_bound", "1", bound.is_bound ? 1.0 : 0.0}});
 }
 
 /// Every test of the verdict: a group for each family, with columns over its members.
@@ -72,33 +79,24 @@ void write_families(const h5::Handle& cell_group, const Verdict& verdict) {
       if (!member.name.empty()) names += (names.empty() ? "" : "\n") + member.name;
     }
     if (!names.empty()) h5::put_text(group, "members", names);
-    for (const NamedSeries& column : family_columns(test)) {
-      const auto dataset =
-          h5::create_dataset(group, column.name, Element::f64, {column.values.size()});
-      h5::write(dataset, Element::f64, column.values.data());
-      h5::put_text(dataset, "units", column.units);
-    }
+    write_columns(group, family_frame(test).columns, nullptr);
   }
 }
 
 void write_cell(const h5::Handle& cells, const StudyAnalysis& study, const CellAnalysis& cell,
                 const Times& times) {
-  const double level = study.level;
   const auto group = h5::create_group(cells, cell.label);
   h5::put_text(group, "filter", cell.filter);
   h5::put_text(group, "long_name", cell.long_name);
   h5::put_text(group, "verdict", in_words(cell.verdict));
-  const auto numbers = h5::create_group(group, "numbers");
-  for (const NamedNumber& number : numbers_of(cell)) write_number(numbers, number);
+  write_row(h5::create_group(group, "numbers"), numbers_of(cell));
   write_families(group, cell.verdict);
   const auto consistency = h5::create_group(group, "consistency");
   for (const NeesResult& nees : cell.nees) {
-    const auto test =
-        h5::create_group(consistency, name_of(nees.block) + "_" + name_of(nees.moments));
-    for (const NamedNumber& number : numbers_of(cell, nees, level)) write_number(test, number);
+    write_row(h5::create_group(consistency, name_of(nees.block) + "_" + name_of(nees.moments)),
+              numbers_of(cell, nees, study.level));
   }
-  const auto series = h5::create_group(group, "series");
-  for (const NamedSeries& one : series_of(cell)) write_series(series, one, times.scans);
+  write_columns(h5::create_group(group, "series"), series_of(cell), &times.scans);
   write_references(group, study, cell, times);
 }
 

@@ -2,26 +2,21 @@
 #include "analysis/tables/tables.hpp"
 #include "engine/visible_text.hpp"
 
+#include <map>
 #include <string_view>
 
 namespace montecarta::analysis {
 namespace {
 
+/// As LaTeX prints a character.
 std::string latex_escaped(char c) {
-  switch (c) {
-    case '\\':
-      return "\\textbackslash{}";
-    case '~':
-      return "\\textasciitilde{}";
-    case '^':
-      return "\\textasciicircum{}";
-    case '<':
-      return "\\textless{}";
-    case '>':
-      return "\\textgreater{}";
-    default:
-      break;
-  }
+  static const std::map<char, std::string> kWords = {{'\\', "\\textbackslash{}"},
+                                                     {'~', "\\textasciitilde{}"},
+                                                     {'^', "\\textasciicircum{}"},
+                                                     {'<', "\\textless{}"},
+                                                     {'>', "\\textgreater{}"}};
+  const auto word = kWords.find(c);
+  if (word != kWords.end()) return word->second;
   const bool special = std::string_view("&%$#_{}").find(c) != std::string_view::npos;
   return special ? std::string("\\") + c : std::string(1, c);
 }
@@ -41,15 +36,8 @@ std::string latex_row(const Texts& texts) {
 
 std::string latex_escape(const std::string& text) {
   std::string latex;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if (text.compare(i, 2, "+-") == 0) {
-      latex += "$\\pm$";
-      ++i;
-    } else {
-      latex += latex_escaped(text[i]);
-    }
-  }
-  return latex;
+  for (const char c : text) latex += latex_escaped(c);
+  return replaced(latex, "+-", "$\\pm$");
 }
 
 std::string latex_tabular(const TextTable& table) {

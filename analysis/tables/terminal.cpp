@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/imported_estimates.hpp"
 #include "analysis/metrics/metric.hpp"
-#include "analysis/metrics/reference_report.hpp"
+#include "analysis/metrics/references.hpp"
 #include "analysis/metrics/verdict_table.hpp"
-#include "analysis/output/reading_order.hpp"
 #include "analysis/output/text_table.hpp"
-#include "analysis/tables/summary_table.hpp"
 #include "analysis/tables/tables.hpp"
 #include "engine/errors.hpp"
 #include "engine/wrapped_text.hpp"
@@ -14,7 +12,6 @@
 #include <iterator>
 #include <map>
 #include <ostream>
-#include <variant>
 
 namespace montecarta::analysis {
 namespace {
@@ -57,10 +54,8 @@ std::vector<Section> terminal_sections(const StudyAnalysis& study) {
 
 /// A blank line behind each.
 void print_section_tables(std::ostream& out, const Section& section, std::size_t width) {
-  for (const Section::Block& block : section.blocks) {
-    const auto* table = std::get_if<Section::Table>(&block);
-    if (table == nullptr) continue;
-    print_table(out, table->table, width);
+  for (const auto& table : section.all<Section::Table>()) {
+    print_table(out, table.table, width);
     out << '\n';
   }
 }
@@ -97,10 +92,8 @@ bool is_in_summary(const Section& section) {
 void print_sentences(std::ostream& out, const StudyAnalysis& study, std::size_t width) {
   bool has_any = false;
   for (const Section& section : terminal_sections(study)) {
-    for (const Section::Block& block : section.blocks) {
-      const auto* lead = std::get_if<Section::Lead>(&block);
-      if (lead == nullptr) continue;
-      out << engine::wrapped(lead->text, width, 2);
+    for (const auto& lead : section.all<Section::Lead>()) {
+      out << engine::wrapped(lead.text, width, 2);
       has_any = true;
     }
   }
@@ -132,15 +125,12 @@ void print_named(std::ostream& out, const StudyAnalysis& study, const std::strin
                  std::size_t width) {
   std::string known;
   for (const Section& section : sections_of(study)) {
-    for (const Section::Block& block : section.blocks) {
-      const auto* table = std::get_if<Section::Table>(&block);
-      if (table == nullptr) continue;
-      known += (known.empty() ? "" : ", ") + table->name;
-      if (table->name != name) continue;
-      print_table(out, table->table, width);
-      for (const Section::Block& other : section.blocks) {
-        const auto* note = std::get_if<Section::Note>(&other);
-        if (note != nullptr) out << '\n' << engine::wrapped(note->text, width);
+    for (const auto& table : section.all<Section::Table>()) {
+      known += (known.empty() ? "" : ", ") + table.name;
+      if (table.name != name) continue;
+      print_table(out, table.table, width);
+      for (const auto& note : section.all<Section::Note>()) {
+        out << '\n' << engine::wrapped(note.text, width);
       }
       return;
     }

@@ -4,28 +4,17 @@
 #include "analysis/output/number_text.hpp"
 #include "analysis/statistics/paired_tests.hpp"
 
+#include <boost/math/distributions/normal.hpp>
+
 #include <algorithm>
+#include <cmath>
 
 namespace montecarta::analysis {
 
 std::string name_of(Family family) {
-  switch (family) {
-    case Family::size:
-      return "size";
-    case Family::component:
-      return "component";
-    case Family::stretch:
-      return "stretch";
-    case Family::scan:
-      return "scan";
-    case Family::bias:
-      return "bias";
-    case Family::correlation:
-      return "correlation";
-    case Family::between_runs:
-      break;
-  }
-  return "between runs";
+  constexpr std::array kNames = {"size", "component",   "stretch",     "scan",
+                                 "bias", "correlation", "between runs"};
+  return kNames.at(static_cast<std::size_t>(family));
 }
 
 std::string key_of(Family family) {
@@ -60,6 +49,29 @@ void judge_together(std::vector<FamilyTest>& families, double level) {
     test.member_limit =
         (1.0 - level) / (std::max(holm_factor, 1.0) * static_cast<double>(test.members.size()));
   }
+}
+
+namespace {
+
+constexpr double kLeastSpent = 1e-10;  // a level nearer to 1 has no exact complement
+
+}  // namespace
+
+double spent(double alpha, double information) {
+  if (!(information > 0.0)) return 0.0;
+  const boost::math::normal normal;
+  const double z = boost::math::quantile(boost::math::complement(normal, 0.5 * alpha));
+  return 2.0 * boost::math::cdf(boost::math::complement(normal, z / std::sqrt(information)));
+}
+
+double level_of_look(double level, std::span<const std::uint64_t> looks, std::uint64_t runs) {
+  if (looks.size() < 2) return level;
+  const auto look = std::min(std::ranges::lower_bound(looks, runs), looks.end() - 1);
+  const auto information = [&](std::uint64_t n) {
+    return static_cast<double>(n) / static_cast<double>(looks.back());
+  };
+  const double before = look == looks.begin() ? 0.0 : spent(1.0 - level, information(*(look - 1)));
+  return 1.0 - std::max(spent(1.0 - level, information(*look)) - before, kLeastSpent);
 }
 
 }  // namespace montecarta::analysis

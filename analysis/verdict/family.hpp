@@ -5,6 +5,8 @@
 #include "analysis/statistics/spread.hpp"
 
 #include <array>
+#include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -67,5 +69,16 @@ struct FamilyTest {
 /// Corrects the p-values of families of tests that are judged together at `level`: Bonferroni over
 /// the members of each, Holm (1979) over the families. Fills p, member_limit and is_rejected.
 void judge_together(std::vector<FamilyTest>& families, double level);
+
+/// Share of the error probability `alpha` that interim analyses have spent when `information`, in
+/// [0, 1], of the runs are there: 2 - 2 Phi(z / sqrt(information)), which resembles the boundaries
+/// of O'Brien and Fleming (Lan and DeMets 1983).
+double spent(double alpha, double information);
+
+/// Level of the interim analysis of `runs` runs, where `looks` are the increasing numbers of runs
+/// of all interim analyses. Each has the error probability that is spent since the one before, so
+/// that together they reject with a probability of at most 1 - level, for any dependence between
+/// them. Between two looks it is the level of the next one. Without looks it is `level`.
+double level_of_look(double level, std::span<const std::uint64_t> looks, std::uint64_t runs);
 
 }  // namespace montecarta::analysis

@@ -4,6 +4,7 @@
 #include "analysis/statistics/squares_law.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace montecarta::analysis {
@@ -88,21 +89,9 @@ std::optional<std::uint64_t> more_runs_of(const Verdict& verdict, std::uint64_t 
 }  // namespace
 
 std::string name_of(Answer answer) {
-  switch (answer) {
-    case Answer::untested:
-      return "untested";
-    case Answer::consistent:
-      return "consistent";
-    case Answer::optimistic:
-      return "optimistic";
-    case Answer::conservative:
-      return "conservative";
-    case Answer::inconsistent:
-      return "inconsistent";
-    case Answer::undecided:
-      break;
-  }
-  return "undecided";
+  constexpr std::array kNames = {"untested",     "consistent",   "optimistic",
+                                 "conservative", "inconsistent", "undecided"};
+  return kNames.at(static_cast<std::size_t>(answer));
 }
 
 const FamilyTest* Verdict::find(Family family) const {

@@ -3,7 +3,7 @@
 
 #include "analysis/metrics/metric.hpp"
 #include "analysis/metrics/study_analysis.hpp"
-#include "analysis/output/reading_order.hpp"
+#include "analysis/output/text_table.hpp"
 #include "analysis/page/html.hpp"
 #include "analysis/page/page.hpp"
 #include "engine/errors.hpp"

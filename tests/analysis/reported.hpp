@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <string>
-#include <variant>
 #include <vector>
 
 namespace montecarta::analysis {
@@ -20,10 +19,8 @@ inline Section reported_section(const StudyAnalysis& study, const std::string& n
 
 /// The first table of that section; without rows where there is none.
 inline TextTable reported_table(const StudyAnalysis& study, const std::string& section) {
-  for (const Section::Block& block : reported_section(study, section).blocks) {
-    if (const auto* table = std::get_if<Section::Table>(&block)) return table->table;
-  }
-  return {};
+  const auto tables = reported_section(study, section).all<Section::Table>();
+  return tables.empty() ? TextTable{} : tables.front().table;
 }
 
 /// The figure of this name; without data where there is none.
@@ -33,12 +30,19 @@ inline Figure reported_figure(const StudyAnalysis& study, const std::string& nam
   return found == all.end() ? Figure{name, "", ""} : *found;
 }
 
+/// Row `k` of a frame of numbers.
+inline std::vector<double> row_of(const Frame& frame, std::size_t k) {
+  std::vector<double> row;
+  for (const Frame::Column& column : frame.columns) row.push_back(column.numbers.at(k));
+  return row;
+}
+
 /// The notes of that section.
 inline std::vector<std::string> reported_notes(const StudyAnalysis& study,
                                                const std::string& section) {
   std::vector<std::string> notes;
-  for (const Section::Block& block : reported_section(study, section).blocks) {
-    if (const auto* note = std::get_if<Section::Note>(&block)) notes.push_back(note->text);
+  for (const auto& note : reported_section(study, section).all<Section::Note>()) {
+    notes.push_back(note.text);
   }
   return notes;
 }

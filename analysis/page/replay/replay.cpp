@@ -111,9 +111,11 @@ void add_surroundings(const ResultFile& file, std::size_t run, const Scans& fram
                       Replay& replay) {
   const auto times = drive_of_run(file, file.runs()[run]).scan_times;
   for (const std::size_t s : frames) replay.times.push_back(times[s]);
-  for (const auto& row : landmark_data(file, run).rows)
-    replay.landmarks.emplace_back(row[0], row[1]);
-  for (const auto& row : fix_data(file, run).rows) replay.fixes.emplace_back(row[1], row[2]);
+  for (const auto& at : file.landmarks_of(run)) replay.landmarks.emplace_back(at.x(), at.y());
+  const Frame fixes = fix_data(file, run).frame;
+  for (std::size_t f = 0; f < fixes.rows(); ++f) {
+    replay.fixes.emplace_back(fixes.columns[1].numbers[f], fixes.columns[2].numbers[f]);
+  }
 }
 
 void read_truth(const ResultFile& file, std::size_t run, const Scans& frames, Replay& replay) {
@@ -178,7 +180,7 @@ namespace {
 double visible_change(const ResultFile& file, const StoredMap& stored, std::size_t run,
                       std::size_t last_scan) {
   Bounds bounds;
-  for (const auto& row : landmark_data(file, run).rows) bounds.include(row[0], row[1]);
+  for (const auto& at : file.landmarks_of(run)) bounds.include(at.x(), at.y());
   if (bounds.empty()) {
     for (const Ellipse& ellipse : stored.at(last_scan)) bounds.include(ellipse.x, ellipse.y);
   }
@@ -238,10 +240,7 @@ using Indices = std::vector<std::uint32_t>;
 /// Index at scan `before` of the ancestor of particle `i` of scan `scan`.
 std::uint32_t ancestor_at(const StoredParticles& stored, std::size_t scan, std::size_t before,
                           std::uint32_t i) {
-  for (; scan > before; --scan) {
-    i = stored.ancestor[scan * stored.count + i];
-    if (i >= stored.count) throw StudyError("ancestor: no such particle (the file is damaged)");
-  }
+  for (; scan > before; --scan) i = stored.ancestor[scan * stored.count + i];
   return i;
 }
 
@@ -306,34 +305,23 @@ ReplayParticles thin_particles(const StoredParticles& stored, std::span<const st
 
 namespace {
 
-/// Whether any of these cells has what `has` looks for.
-template <class Has>
-bool any(const Replay& replay, Has has) {
-  return std::ranges::any_of(replay.cells, has);
-}
-
 bool has_particles(const ReplayCell& cell) { return !cell.particles.frames.empty(); }
 
 /// What the player shows of this file.
 std::string shown(const Replay& replay) {
-  std::string words = std::string("All cells are on the same drive: the ") +
-                      (replay.x.empty() ? "" : "true path in grey and the ") +
-                      "estimate in colour; ellipses hold " + level_text(kReplayShare) +
-                      " of the probability of a position or a landmark (true ones are crosses)";
-  if (any(replay, has_particles)) words += "; dots are particles, the paler the less they weigh";
-  if (any(replay,
-          [](const ReplayCell& cell) { return has_particles(cell) && cell.has_ancestry; })) {
-    words +=
-        ", and the threads behind them the ways their ancestors came: where all threads run "
-        "together, the particles share one past and cannot doubt it";
-  }
-  words += ". The square below shows " + exact_text(2.0 * replay.close_up) +
-           " m about the vehicle. Where a filter is consistent, the vehicle is outside of the "
-           "ellipse in one of twenty scans";
-  if (any(replay, [](const ReplayCell& cell) { return !cell.nees.empty(); })) {
-    words += ", and the NEES ratio of the run as often outside of the grey band";
-  }
-  return words + ".";
+  const auto if_any = [&](const char* key, const auto& has) {
+    return std::ranges::any_of(replay.cells, has) ? prose("replay", key) : "";
+  };
+  return prose(
+      "replay", "shown",
+      {{"paths", prose("replay", replay.x.empty() ? "estimate" : "truth")},
+       {"level", level_text(kReplayShare)},
+       {"particles", if_any("particles", has_particles)},
+       {"ancestors",
+        if_any("ancestors",
+               [](const ReplayCell& cell) { return has_particles(cell) && cell.has_ancestry; })},
+       {"metres", exact_text(2.0 * replay.close_up)},
+       {"nees", if_any("nees", [](const ReplayCell& cell) { return !cell.nees.empty(); })}});
 }
 
 std::size_t held_index(const ResultFile& file, std::uint64_t run) {
@@ -342,20 +330,24 @@ std::size_t held_index(const ResultFile& file, std::uint64_t run) {
 
 /// Which run is shown, of how many, why this one, and whether more is stored of it than of others.
 std::string which_run(const ResultFile& file, const Replay& replay) {
-  const std::size_t index = held_index(file, replay.run), runs = file.runs().size();
-  if (runs == 1) return "Run " + std::to_string(replay.run) + " is the only one of this file.";
+  const std::size_t index = held_index(file, replay.run);
+  const std::string run = std::to_string(replay.run);
+  if (file.runs().size() == 1) return prose("replay", "only run", {{"run", run}});
   const std::size_t cells = file.cells().size();
   const auto complete = static_cast<std::size_t>(std::ranges::count_if(
       replay.cells, [](const ReplayCell& cell) { return cell.failure.empty(); }));
-  std::string words = "This is run " + std::to_string(replay.run) + ", one of " +
-                      std::to_string(runs) + " that are numbered from 0: ";
-  words += chosen_run(file, {}) != index ? "it was chosen by --run."
-           : complete == cells           ? "it is the first that every cell completed."
-                               : "it is the first that " + std::to_string(complete) + " of " +
-                                     std::to_string(cells) + " cells completed.";
+  const std::string which =
+      complete == cells ? "every cell"
+                        : std::to_string(complete) + " of " + std::to_string(cells) + " cells";
+  const std::string reason = chosen_run(file, {}) != index
+                                 ? prose("replay", "chosen")
+                                 : prose("replay", "first", {{"cells", which}});
+  const std::string words =
+      prose("replay", "one run",
+            {{"run", run}, {"runs", std::to_string(file.runs().size())}, {"reason", reason}});
   if (index >= file.description().full_runs_here()) return words;
-  return words + " It is stored in full because of record.full_runs = " +
-         std::to_string(file.description().full_runs) + ".";
+  return words + " " +
+         prose("replay", "full runs", {{"runs", std::to_string(file.description().full_runs)}});
 }
 
 /// What to record to see more; empty where all is there, and of imported estimates.
@@ -373,15 +365,13 @@ std::string wanted(const ResultFile& file, std::size_t run) {
   if (lacks("map_mean", false)) more += ", map";
   if (more.empty()) return "";
   const std::uint64_t full = file.description().full_runs;
-  const std::string remedy =
-      full > 0 ? "report on one of the first " + std::to_string(full) + " runs with --run"
-               : "give the study record.full_runs = 1 to store all of the first run";
-  return "This file does not hold everything of this run that can be replayed (" + more.substr(2) +
-         "): " + remedy +
-         ", or let "
-         "montecarta replay " +
-         file.path().filename().string() + " --cell CELL --run " +
-         std::to_string(file.runs()[run]) + " -o ONE.h5 record it, and report on that file.";
+  const std::string remedy = full > 0 ? prose("replay", "choose", {{"runs", std::to_string(full)}})
+                                      : prose("replay", "store");
+  return prose("replay", "wanted",
+               {{"columns", more.substr(2)},
+                {"remedy", remedy},
+                {"file", file.path().filename().string()},
+                {"run", std::to_string(file.runs()[run])}});
 }
 
 }  // namespace

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/comparison/study_comparison.hpp"
+#include "analysis/metrics/cell_analysis.hpp"
 #include "analysis/metrics/nees_accumulator.hpp"
-#include "analysis/metrics/paired_runs.hpp"
 #include "analysis/metrics/study_analysis.hpp"
 #include "analysis/statistics/bootstrap.hpp"
+#include "analysis/statistics/spread.hpp"
 #include "engine/errors.hpp"
 #include "engine/random/stream.hpp"
 #include "tests/doubles/matchers.hpp"

@@ -11,7 +11,7 @@
 namespace montecarta::analysis {
 namespace {
 
-const FigureData kLandmarks{"landmarks.csv", {"x [m]", "y [m]"}, {{1.0, 2.0}}};
+const FigureData kLandmarks{"landmarks.csv", {{{"x", "m", {1.0}}, {"y", "m", {2.0}}}}};
 
 Bounds bounds_of_test() {
   Bounds bounds;
@@ -26,14 +26,21 @@ const ChartMarks* find(const ChartPanel& panel, const std::string& name) {
 }
 
 TEST(PathChart, TellsTimeAndErrorOfTheEstimateAndHidesItWithItsCell) {
-  const DrawnPath drawn{
-      "ekf",
-      4,
-      {"path_ekf.csv",
-       {"time [s]", "true x [m]", "true y [m]", "x [m]", "y [m]"},
-       {{0.5, 0.0, 0.0, 0.0, 0.0}, {1.0, 10.0, 5.0, 13.0, 9.0}}},
-      {},
-      {"map_ekf.csv", {"x", "y", "major [m]", "minor [m]", "angle"}, {{7.0, 8.0, 2.0, 1.0, 30.0}}}};
+  const DrawnPath drawn{"ekf",
+                        4,
+                        {"path_ekf.csv",
+                         {{{"time", "s", {0.5, 1.0}},
+                           {"true x", "m", {0.0, 10.0}},
+                           {"true y", "m", {0.0, 5.0}},
+                           {"x", "m", {0.0, 13.0}},
+                           {"y", "m", {0.0, 9.0}}}}},
+                        {},
+                        {"map_ekf.csv",
+                         {{{"x", "m", {7.0}},
+                           {"y", "m", {8.0}},
+                           {"major diameter", "m", {2.0}},
+                           {"minor diameter", "m", {1.0}},
+                           {"angle", "deg", {30.0}}}}}};
   const Chart chart = path_chart({drawn}, kLandmarks, {}, bounds_of_test());
   EXPECT_TRUE(chart.is_map);
   EXPECT_DOUBLE_EQ(chart.aspect, 0.5);
@@ -58,8 +65,13 @@ TEST(PathChart, TellsTimeAndErrorOfTheEstimateAndHidesItWithItsCell) {
 
 TEST(PathChart, OfARecordedDriveHasFixesAndNoTruth) {
   const DrawnPath drawn{
-      "ekf", 0, {"path_ekf.csv", {"time [s]", "x [m]", "y [m]"}, {{0.5, 3.0, 4.0}}}, {}, {}};
-  const FigureData fixes{"fixes_gps.csv", {"time [s]", "x [m]", "y [m]"}, {{2.0, 5.0, 6.0}}};
+      "ekf",
+      0,
+      {"path_ekf.csv", {{{"time", "s", {0.5}}, {"x", "m", {3.0}}, {"y", "m", {4.0}}}}},
+      {},
+      {}};
+  const FigureData fixes{"fixes_gps.csv",
+                         {{{"time", "s", {2.0}}, {"x", "m", {5.0}}, {"y", "m", {6.0}}}}};
   const Chart chart = path_chart({drawn}, {}, fixes, bounds_of_test());
   const ChartPanel& panel = chart.panels.front();
   EXPECT_EQ(find(panel, "true path"), nullptr);
@@ -76,14 +88,15 @@ TEST(AncestryFigure, HasATreeForEveryCellThatCompletedTheRun) {
   const Figure figure = ancestry_figure(file, 0);
   ASSERT_EQ(figure.data.size(), 2u);
   EXPECT_EQ(figure.data[0].name, "ancestry_scripted_m4.csv");
-  EXPECT_GE(figure.data[0].rows.size(), 4u);  // a line a leaf at least
-  for (const auto& row : figure.data[0].rows) {
-    EXPECT_LE(row[0], row[1]);
-    EXPECT_LE(row[1], file.scan_times().back());
+  EXPECT_GE(figure.data[0].frame.rows(), 4u);  // a line a leaf at least
+  const auto& columns = figure.data[0].frame.columns;
+  for (std::size_t k = 0; k < figure.data[0].frame.rows(); ++k) {
+    EXPECT_LE(columns[0].numbers[k], columns[1].numbers[k]);
+    EXPECT_LE(columns[1].numbers[k], file.scan_times().back());
   }
   ASSERT_EQ(figure.chart.panels.size(), 2u);
   EXPECT_EQ(figure.chart.panels[1].cell, "scripted_m3");
-  EXPECT_EQ(figure.chart.panels[0].marks.at(0).x.size(), 4 * figure.data[0].rows.size());
+  EXPECT_EQ(figure.chart.panels[0].marks.at(0).x.size(), 4 * figure.data[0].frame.rows());
   EXPECT_LT(figure.chart.x_first, file.scan_times().back());
   EXPECT_THAT(figure.sentence, HasSubstr("Run 0:"));
   EXPECT_EQ(ancestry_figure(file, 3).data.size(), 1u);  // scripted_m3 failed in run 3

@@ -25,14 +25,14 @@ constexpr std::size_t kRuns = 2 * kRunsOfABlock + 3;
 constexpr double kRounding = 1e-9;  // relative
 
 /// Everything a cell says in numbers, under names.
-std::vector<NamedSeries> all_of(const CellAnalysis& cell) {
-  std::vector<NamedSeries> all = series_of(cell);
-  for (const NamedNumber& number : numbers_of(cell)) {
-    all.push_back({number.name, number.units, {number.value}});
+std::vector<Frame::Column> all_of(const CellAnalysis& cell) {
+  std::vector<Frame::Column> all = series_of(cell);
+  for (const Frame::Entry& number : numbers_of(cell)) {
+    all.push_back({number.name, number.units, {number.number}});
   }
   for (const FamilyTest& family : cell.verdict.families) {
-    for (NamedSeries& column : family_columns(family)) {
-      all.push_back({key_of(family.family) + " " + column.name, column.units, column.values});
+    for (const Frame::Column& column : family_frame(family).columns) {
+      all.push_back({key_of(family.family) + " " + column.name, column.units, column.numbers});
     }
   }
   for (const Score& score : all_scores()) {
@@ -46,13 +46,13 @@ std::vector<NamedSeries> all_of(const CellAnalysis& cell) {
 }
 
 void expect_near(const CellAnalysis& found, const CellAnalysis& wanted) {
-  const std::vector<NamedSeries> a = all_of(found), b = all_of(wanted);
+  const std::vector<Frame::Column> a = all_of(found), b = all_of(wanted);
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t k = 0; k < a.size(); ++k) {
     ASSERT_EQ(a[k].name, b[k].name);
-    ASSERT_EQ(a[k].values.size(), b[k].values.size()) << a[k].name;
-    for (std::size_t i = 0; i < a[k].values.size(); ++i) {
-      const double x = a[k].values[i], y = b[k].values[i];
+    ASSERT_EQ(a[k].numbers.size(), b[k].numbers.size()) << a[k].name;
+    for (std::size_t i = 0; i < a[k].numbers.size(); ++i) {
+      const double x = a[k].numbers[i], y = b[k].numbers[i];
       if (x == y || (std::isnan(x) && std::isnan(y))) continue;
       EXPECT_NEAR(x, y, kRounding * std::max(1.0, std::abs(y))) << a[k].name << " " << i;
     }
@@ -120,12 +120,12 @@ TEST_P(BlocksOfRuns, GiveTheSameBitsOnAnyNumberOfThreads) {
     const StudyAnalysis many = analyze(file, 0.95, Parallel(backend, 3));
     EXPECT_EQ(tables_of(many), tables_of(one));
     for (std::size_t c = 0; c < one.cells.size(); ++c) {
-      const std::vector<NamedSeries> a = all_of(many.cells[c]), b = all_of(one.cells[c]);
+      const std::vector<Frame::Column> a = all_of(many.cells[c]), b = all_of(one.cells[c]);
       ASSERT_EQ(a.size(), b.size());
       for (std::size_t k = 0; k < a.size(); ++k) {
-        ASSERT_EQ(a[k].values.size(), b[k].values.size());
-        const std::size_t bytes = a[k].values.size() * sizeof(double);
-        EXPECT_EQ(std::memcmp(a[k].values.data(), b[k].values.data(), bytes), 0) << a[k].name;
+        ASSERT_EQ(a[k].numbers.size(), b[k].numbers.size());
+        const std::size_t bytes = a[k].numbers.size() * sizeof(double);
+        EXPECT_EQ(std::memcmp(a[k].numbers.data(), b[k].numbers.data(), bytes), 0) << a[k].name;
       }
     }
   }

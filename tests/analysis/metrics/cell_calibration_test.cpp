@@ -225,15 +225,15 @@ TEST(CalibrationFigures, DrawTheEcdfWithItsBandOfWhatIsJudged) {
   const StudyAnalysis study = with_nees(200);
   const Figure figure = reported_figure(study, "nees_quantiles");
   ASSERT_EQ(figure.data.size(), 4u) << "a panel for each quarter";
-  const auto& rows = figure.data[0].rows;
-  ASSERT_EQ(rows.size(), kEcdfSteps + 1);
+  const Frame& frame = figure.data[0].frame;
+  ASSERT_EQ(frame.rows(), kEcdfSteps + 1);
   const Uniformity& test = study.cells[0].get<Calibrations>()[0].test;
-  for (std::size_t j = 0; j < rows.size(); ++j) {
+  for (std::size_t j = 0; j < frame.rows(); ++j) {
     const double point = static_cast<double>(j) / kEcdfSteps;
     const auto from_point = [&](std::size_t count) {
       return static_cast<double>(count) / 200.0 - point;
     };
-    EXPECT_THAT(rows[j],
+    EXPECT_THAT(row_of(frame, j),
                 ElementsAre(point, from_point(test.counts[j]), from_point(test.band.upper(j)),
                             from_point(test.band.lower[j])));
   }

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/cell_sums.hpp"
-#include "analysis/metrics/drive_consistency.hpp"
-#include "analysis/metrics/drive_scores.hpp"
+#include "analysis/metrics/drive.hpp"
 #include "analysis/metrics/innovations.hpp"
 #include "analysis/metrics/metric.hpp"
 #include "analysis/metrics/nees.hpp"
-#include "analysis/metrics/reference_report.hpp"
+#include "analysis/metrics/references.hpp"
 #include "analysis/statistics/sampler_scale.hpp"
 #include "engine/random/stream.hpp"
 #include "tests/analysis/reported.hpp"

@@ -259,8 +259,8 @@ TEST(JointTable, HasEveryNumberAsCsv) {
 TEST(JointFigure, ShowsTheCellAndItsBand) {
   const Figure figure = reported_figure(study_of_two(), "joint_nees");
   ASSERT_EQ(figure.data.size(), 1u);
-  EXPECT_EQ(figure.data[0].rows.size(), 2u);
-  EXPECT_EQ(figure.data[0].rows[0].size(), 4u) << "time, the cell, both ends of the band";
+  EXPECT_EQ(figure.data[0].frame.rows(), 2u);
+  EXPECT_EQ(figure.data[0].frame.columns.size(), 4u) << "time, the cell, both ends of the band";
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 #include "analysis/metrics/lineages.hpp"
 
 #include "analysis/figures/ancestry_figure.hpp"
-#include "analysis/metrics/diversity.hpp"
 #include "engine/errors.hpp"
 #include "engine/random/stream.hpp"
 #include "tests/analysis/synthetic_runs.hpp"
@@ -199,10 +198,6 @@ TEST(AncestryTree, FollowsSomeOfTooManyParticlesEvenly) {
   EXPECT_EQ(tree.branches[2].parent, AncestryTree::kNone);
   EXPECT_EQ(tree.branches[3].leaves, 2u);
   EXPECT_EQ(tree.common_ancestor(), 0.0);
-}
-
-TEST(AncestryTree, RefusesParentsThatAreNot) {
-  EXPECT_THROW(ancestry_tree(std::vector<std::uint32_t>{0, 2}, 2, scan_times(1), 2), RunError);
 }
 
 // Four particles: resampled before scan 2 (three parents) and before scan 4 (two parents).

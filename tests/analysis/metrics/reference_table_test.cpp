@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/metrics/reference_report.hpp"
-#include "analysis/metrics/reference_scores.hpp"
+#include "analysis/metrics/references.hpp"
 #include "analysis/tables/tables.hpp"
 #include "engine/records/h5.hpp"
 #include "tests/analysis/recorded_result.hpp"
+#include "tests/analysis/reported.hpp"
 #include "tests/analysis/synthetic_result.hpp"
 #include "tests/doubles/scratch_folder.hpp"
 
@@ -168,13 +168,19 @@ std::vector<std::string> names_of(const std::vector<Figure>& figures) {
   return names;
 }
 
+std::vector<Figure> reference_figures(const StudyAnalysis& study) {
+  std::vector<Figure> figures = {reference_error_figure(study), map_size_figure(study)};
+  std::erase_if(figures, [](const Figure& figure) { return figure.data.empty(); });
+  return figures;
+}
+
 TEST(ReferenceFigures, ShowErrorsParticlesAndMaps) {
   const auto figures = reference_figures(study_of({cell_of("ekf_slam", "ekf_slam", 0, 1.0),
                                                    cell_of("fastslam2_m20", "fastslam2", 20, 2.0),
                                                    cell_of("fastslam2_m3", "fastslam2", 3, 4.0)}));
   EXPECT_THAT(names_of(figures), ElementsAre("reference_error", "map_size"));
-  EXPECT_EQ(figures[0].data[0].rows[1][0], 1.0);  // over the times of the fixes
-  EXPECT_EQ(figures[0].data[0].rows[1][3], 8.0);
+  EXPECT_EQ(figures[0].data[0].frame.columns[0].numbers[1], 1.0);  // over the times of the fixes
+  EXPECT_EQ(figures[0].data[0].frame.columns[3].numbers[1], 8.0);
 }
 
 TEST(ReferenceFigures, SpreadManyCellsOverAPanelForEachNumberOfParticles) {
@@ -188,10 +194,13 @@ TEST(ReferenceFigures, SpreadManyCellsOverAPanelForEachNumberOfParticles) {
   const Figure figure = reference_error_figure(study_of(cells));
   ASSERT_EQ(figure.data.size(), 2u);
   EXPECT_EQ(figure.data[0].name, "reference_error_m3.csv");
-  EXPECT_THAT(figure.data[1].headings,
-              ElementsAre("time [s]", "ekf_slam", "a", "b", "c", "d", "e"));
-  EXPECT_THAT(figure.data[1].rows[0], ElementsAre(0.5, 1.0, 3.0, testing::IsNan(), 3.0, 3.0, 5.0));
-  EXPECT_THAT(figure.data[0].rows[0], ElementsAre(0.5, 1.0, 2.0, 2.0, 2.0, 2.0, testing::IsNan()));
+  std::vector<std::string> names;
+  for (const Frame::Column& column : figure.data[1].frame.columns) names.push_back(column.name);
+  EXPECT_THAT(names, ElementsAre("time [s]", "ekf_slam", "a", "b", "c", "d", "e"));
+  EXPECT_THAT(row_of(figure.data[1].frame, 0),
+              ElementsAre(0.5, 1.0, 3.0, testing::IsNan(), 3.0, 3.0, 5.0));
+  EXPECT_THAT(row_of(figure.data[0].frame, 0),
+              ElementsAre(0.5, 1.0, 2.0, 2.0, 2.0, 2.0, testing::IsNan()));
   EXPECT_EQ(figure.chart.panels[1].label, "distance to gps [m], M = 20");
 }
 

@@ -8,7 +8,7 @@
 #include "analysis/metrics/joint_nees.hpp"
 #include "analysis/metrics/map_errors.hpp"
 #include "analysis/metrics/measured_run.hpp"
-#include "analysis/metrics/reference_scores.hpp"
+#include "analysis/metrics/references.hpp"
 #include "engine/errors.hpp"
 #include "engine/records/merge.hpp"
 #include "tests/analysis/recorded_result.hpp"

@@ -56,7 +56,7 @@ TEST(Strips, ColourEveryPlaceOfAShortSeriesAroundItsTime) {
   EXPECT_EQ(figure.chart.x_to, 4.0);
   EXPECT_THAT(first_row(figure).levels, ElementsAre(kGrey, 18, kNone, 2));
   EXPECT_EQ(figure.data.front().name, "strips.csv");
-  EXPECT_EQ(figure.data.front().rows[1][1], 20.0);
+  EXPECT_EQ(figure.data.front().frame.columns[1].numbers[1], 20.0);
 }
 
 /// Also one that is nearer to 1 than a value inside the band beside it.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/statistics/squares_law.hpp"
 
-#include "analysis/statistics/group_sequential.hpp"
-#include "analysis/verdict/run_products.hpp"
+#include "analysis/verdict/family.hpp"
+#include "analysis/verdict/whole_error.hpp"
 #include "engine/random/stream.hpp"
 
 #include <boost/math/distributions/chi_squared.hpp>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/tables/tables.hpp"
 
+#include "analysis/metrics/verdict_table.hpp"
 #include "analysis/output/csv_file.hpp"
 #include "analysis/output/number_text.hpp"
 #include "analysis/statistics/spread.hpp"
-#include "analysis/tables/summary_table.hpp"
 #include "engine/errors.hpp"
 #include "engine/records/h5.hpp"
 #include "tests/doubles/matchers.hpp"

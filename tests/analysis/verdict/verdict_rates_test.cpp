@@ -3,7 +3,7 @@
 // build/analysis_tests
 // --gtest_filter='*SlowVerdict*'` prints the tables of STATISTICS 5 and 18; without the variable a
 // sample of their lines.
-#include "analysis/statistics/group_sequential.hpp"
+#include "analysis/verdict/family.hpp"
 #include "engine/runs/monte_carlo.hpp"
 #include "tests/analysis/verdict_studies.hpp"
 

@@ -268,8 +268,8 @@ TEST_F(JudgeLayouts, WhatLiesBesideIsJudgedAndPartOfTheStudy) {
   ASSERT_EQ(judge_by("world", files).code, 0);
   const ResultFile file(folder_ / "mine.h5");
   const auto numbers = numbers_of(analysis::analyze(file).cells[0]);
-  const auto nis = std::ranges::find(numbers, "nis_per_component", &analysis::NamedNumber::name);
-  EXPECT_NEAR(nis->value, 3.0, 1e-12);
+  const auto nis = std::ranges::find(numbers, "nis_per_component", &analysis::Frame::Entry::name);
+  EXPECT_NEAR(nis->number, 3.0, 1e-12);
   write("run_1/innovation.csv", "time_s,nis,nis_dof\n1,5,2\n");
   ASSERT_EQ(judge_by("world", files).code, 0);
   EXPECT_NE(ResultFile(folder_ / "mine.h5").study_sha256(), file.study_sha256());

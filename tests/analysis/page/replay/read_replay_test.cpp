@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/page/replay/replay.hpp"
-#include "engine/errors.hpp"
 #include "engine/random/stream.hpp"
 #include "tests/analysis/recorded_result.hpp"
 #include "tests/analysis/synthetic_result.hpp"
@@ -212,12 +211,6 @@ TEST(ThinParticles, WeighByTheHeaviestOfAllShownOrNot) {
   ASSERT_THAT(shown, ElementsAre(0, 1));
   EXPECT_NEAR(weight[0], 1.0 / 6.0, 1e-12);
   EXPECT_NEAR(weight[1], 1.0, 1e-12);
-}
-
-TEST(ThinParticles, RefuseAnAncestorThatIsNoParticle) {
-  Genealogy family(3, 2, 1);
-  family.ancestor[3] = 3;
-  EXPECT_THROW(thin_particles(family.stored(), std::vector<std::size_t>{0, 1}, 100), StudyError);
 }
 
 }  // namespace

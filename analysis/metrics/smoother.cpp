@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Efficiency of each cell against the study's cell of full smoothing.
-#include "analysis/metrics/cell_range.hpp"
-#include "analysis/metrics/metric.hpp"
-#include "analysis/metrics/paired_runs.hpp"
-#include "analysis/metrics/study_analysis.hpp"
-#include "analysis/output/number_text.hpp"
+#include "analysis/metrics/cell_analysis.hpp"
+#include "analysis/metrics/cell_report.hpp"
 #include "analysis/statistics/spread.hpp"
 
 #include <algorithm>
@@ -63,8 +60,7 @@ std::vector<TextTable::Entry> row_beside(const CellAnalysis& cell, const CellAna
   };
   const bool are_judged = is_judged(cell) && is_judged(smoother);
   const double ratio = cell.verdict.ratio_estimate() / smoother.verdict.ratio_estimate();
-  return {{"cell", cell.label, Align::left},
-          {"position efficiency", efficiency_text(cell, smoother, "position_mse", level)},
+  return {{"position efficiency", efficiency_text(cell, smoother, "position_mse", level)},
           {"heading efficiency", efficiency_text(cell, smoother, "heading_mse", level)},
           {"ANEES / smoother's", are_judged ? compact(ratio) : "-"},
           {"CPU / smoother's", readable(cpu(cell) / cpu(smoother))}};
@@ -73,19 +69,18 @@ std::vector<TextTable::Entry> row_beside(const CellAnalysis& cell, const CellAna
 std::vector<Section> smoother_sections(const StudyAnalysis& study) {
   const CellAnalysis* smoother = smoother_of(study);
   if (smoother == nullptr || !study.has_truth) return {};
-  TextTable table;
-  for (const CellAnalysis& cell : study.cells) {
-    if (&cell != smoother) table.add(row_beside(cell, *smoother, study.level));
-  }
+  const CellEntries row = [&](const CellAnalysis& cell) {
+    return &cell == smoother ? std::vector<TextTable::Entry>{}
+                             : row_beside(cell, *smoother, study.level);
+  };
   const CellNumber efficiency = [&](const CellAnalysis& cell) {
     return &cell == smoother ? kNaN
                              : paired_efficiency(runs_beside(cell, *smoother, "position_mse"));
   };
-  Section section = section_of("smoother", {{"smoother", smoother->label},
-                                            {"efficiency", range_over_cells(study, efficiency)}});
-  section.add("smoother", table);
-  section.add_notes("notes", {{"smoother", smoother->label}});
-  return {section};
+  return table_section(
+      section_of("smoother", {{"smoother", smoother->label},
+                              {"efficiency", range_over_cells(study, efficiency)}}),
+      "smoother", cell_table(study, row), {{"smoother", smoother->label}});
 }
 
 }  // namespace

@@ -1,14 +1,37 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "analysis/metrics/metric.hpp"
 #include "analysis/metrics/study_analysis.hpp"
 #include "analysis/output/figure.hpp"
+#include "analysis/output/number_text.hpp"
 
 #include <functional>
 #include <string>
 #include <vector>
 
+// Numbers of all cells of a study side by side: in a table, in a figure, and as a range in words.
 namespace montecarta::analysis {
+
+/// A number of a cell; NaN if it has none.
+using CellNumber = std::function<double(const CellAnalysis&)>;
+using NumberText = std::function<std::string(double)>;
+
+/// The least and the greatest number of all cells with their labels, for the summary of a section:
+/// "1.62 (ekf_slam) to 717 (fastslam2)". One number if both read the same; "-" without any.
+std::string range_over_cells(
+    const StudyAnalysis& study, const CellNumber& number_of,
+    const NumberText& text_of = [](double value) { return readable(value); });
+
+/// Columns of a cell behind its label; empty where it has no row.
+using CellEntries = std::function<std::vector<TextTable::Entry>(const CellAnalysis&)>;
+
+/// One row for each cell that has entries.
+TextTable cell_table(const StudyAnalysis& study, const CellEntries& entries_of);
+
+/// A section with a table and the notes of its prose; none if the table has no rows.
+std::vector<Section> table_section(Section section, const std::string& table_name,
+                                   const TextTable& table, const Values& notes = {});
 
 /// The label of a cell without its number of particles: "fastslam2_gps" of "fastslam2_m100_gps".
 std::string label_without_particles(const CellAnalysis& cell);
@@ -31,5 +54,9 @@ std::vector<double> scaled(std::vector<double> values, double factor);
 /// in which colours stand for filters. None where no cell has values.
 std::vector<Panel> cell_panels(const StudyAnalysis& study, const Panel& blank,
                                const CellValues& values_of);
+
+/// The figure with these panels over the scans.
+Figure cell_figure(const StudyAnalysis& study, Figure figure, const Panel& blank,
+                   const CellValues& values_of);
 
 }  // namespace montecarta::analysis

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/metrics/cell_panels.hpp"
+#include "analysis/metrics/cell_report.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <set>
 
@@ -46,6 +47,41 @@ Panel panel_of(std::size_t particles, const std::vector<DrawnCurve>& drawn,
 }
 
 }  // namespace
+
+std::string range_over_cells(const StudyAnalysis& study, const CellNumber& number_of,
+                             const NumberText& text_of) {
+  const CellAnalysis* least = nullptr;
+  const CellAnalysis* greatest = nullptr;
+  for (const CellAnalysis& cell : study.cells) {
+    const double number = number_of(cell);
+    if (std::isnan(number)) continue;
+    if (least == nullptr || number < number_of(*least)) least = &cell;
+    if (greatest == nullptr || number > number_of(*greatest)) greatest = &cell;
+  }
+  if (least == nullptr) return "-";
+  const std::string from = text_of(number_of(*least)), to = text_of(number_of(*greatest));
+  return from == to ? from
+                    : from + " (" + least->label + ") to " + to + " (" + greatest->label + ")";
+}
+
+TextTable cell_table(const StudyAnalysis& study, const CellEntries& entries_of) {
+  TextTable table;
+  for (const CellAnalysis& cell : study.cells) {
+    std::vector<TextTable::Entry> row = entries_of(cell);
+    if (row.empty()) continue;
+    row.insert(row.begin(), {"cell", cell.label, Align::left});
+    table.add(row);
+  }
+  return table;
+}
+
+std::vector<Section> table_section(Section section, const std::string& table_name,
+                                   const TextTable& table, const Values& notes) {
+  if (table.rows.empty()) return {};
+  section.add(table_name, table);
+  section.add_notes("notes", notes);
+  return {section};
+}
 
 std::string label_without_particles(const CellAnalysis& cell) {
   const std::string part = "_m" + std::to_string(cell.particles);
@@ -95,6 +131,12 @@ std::vector<Panel> cell_panels(const StudyAnalysis& study, const Panel& blank,
   panels.push_back(blank);
   for (const DrawnCurve& one : drawn) panels.front().curves.push_back(one.curve);
   return panels;
+}
+
+Figure cell_figure(const StudyAnalysis& study, Figure figure, const Panel& blank,
+                   const CellValues& values_of) {
+  add_panels(cell_panels(study, blank, values_of), study.times, figure);
+  return figure;
 }
 
 }  // namespace montecarta::analysis

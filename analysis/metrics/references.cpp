@@ -1,0 +1,530 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Independent measurements of the path.
+#include "analysis/metrics/references.hpp"
+
+#include "analysis/metrics/cell_report.hpp"
+#include "analysis/metrics/map_errors.hpp"
+#include "analysis/metrics/measured_run.hpp"
+#include "analysis/statistics/spread.hpp"
+#include "engine/errors.hpp"
+#include "engine/numbers/angle.hpp"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+
+namespace montecarta::analysis {
+namespace {
+
+Eigen::Vector2d centre_of(std::span<const Eigen::Vector2d> points) {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  for (const Eigen::Vector2d& point : points) sum += point;
+  return sum / static_cast<double>(points.size());
+}
+
+using Points = std::vector<Eigen::Vector2d>;
+
+/// Distances over fixes in single numbers [m].
+struct Distances {
+  double rms, median, gated_rms, gated_share;
+};
+
+double root_mean(double sum, std::size_t n) { return std::sqrt(sum / static_cast<double>(n)); }
+
+Distances in_numbers(const std::vector<double>& squared) {
+  const double median = std::sqrt(median_of(squared));
+  const double gate = kReferenceGate * median;
+  double all = 0.0, within = 0.0;
+  std::size_t n = 0;
+  for (const double square : squared) {
+    all += square;
+    if (!(square <= gate * gate)) continue;
+    within += square;
+    ++n;
+  }
+  return {root_mean(all, squared.size()), median, root_mean(within, n),
+          static_cast<double>(n) / static_cast<double>(squared.size())};
+}
+
+std::vector<double> squared_distances(const Points& estimate, const Points& fixes) {
+  std::vector<double> squared;
+  for (std::size_t f = 0; f < fixes.size(); ++f) {
+    squared.push_back((estimate[f] - fixes[f]).squaredNorm());
+  }
+  return squared;
+}
+
+Points positions_of(const std::vector<Pose>& poses) {
+  Points points;
+  for (const Pose& pose : poses) points.emplace_back(pose.x, pose.y);
+  return points;
+}
+
+Points moved_by(const RigidMotion& motion, const Points& estimate) {
+  Points moved;
+  for (const Eigen::Vector2d& point : estimate) moved.push_back(motion(point));
+  return moved;
+}
+
+double heading_rmse(const std::vector<Pose>& poses, const std::vector<double>& headings) {
+  double sum = 0.0;
+  for (std::size_t f = 0; f < headings.size(); ++f) {
+    const double error = boxminus({0.0, 0.0, headings[f]}, poses[f])(2);
+    sum += error * error;
+  }
+  return root_mean(sum, headings.size());  // NaN of none
+}
+
+/// No fix is known better than to a centimetre, no heading than to a hundredth of a degree.
+std::string mean_text(const Spread& spread, double factor = 1.0) {
+  return with_error_to(2, factor * spread.summary.mean, factor * spread.summary.standard_error());
+}
+
+std::string count_text(const Spread& spread) {
+  return with_error_to(1, spread.summary.mean, spread.summary.standard_error());
+}
+
+/// The middle run and the two ends: "1.55 [1.41, 2.20]".
+std::string runs_text(const Spread& spread) {
+  if (std::isnan(spread.median)) return "-";
+  const auto text = [](double value) { return with_error_to(2, value, kNaN); };
+  return text(spread.median) + " [" + text(spread.least) + ", " + text(spread.greatest) + "]";
+}
+
+std::string of_text(std::size_t k, std::size_t n) {
+  return std::to_string(k) + " of " + std::to_string(n);
+}
+
+/// Runs that can be judged, failed ones included.
+std::size_t judged_runs(const CellAnalysis& cell, const ReferenceAnalysis& against) {
+  return against.with_fixes() + cell.failures.size();
+}
+
+std::string lost_text(const CellAnalysis& cell, const ReferenceAnalysis& against) {
+  return of_text(against.lost() + cell.failures.size(), judged_runs(cell, against));
+}
+
+bool any_heading(const StudyAnalysis& study) {
+  return std::ranges::any_of(study.references, &JudgedReference::has_heading);
+}
+
+std::vector<TextTable::Entry> reference_row(const StudyAnalysis& study, const CellAnalysis& cell,
+                                            std::size_t r) {
+  const ReferenceAnalysis& against = cell.get<ReferenceAnalyses>()[r];
+  const auto text = [&](double ReferenceScores::*score, double factor = 1.0) {
+    return mean_text(against.over_runs(score), factor);
+  };
+  const double kept = against.over_runs(&ReferenceScores::aligned_gated_share).summary.mean;
+  std::vector<TextTable::Entry> row = {
+      {"cell", cell.label, Align::left},
+      {"reference", study.references[r].name, Align::left},
+      {"runs", runs_in_words(cell), Align::left},
+      {"lost", study.references[r].fixes == 0 ? "-" : lost_text(cell, against)},
+      {"raw RMS [m]", text(&ReferenceScores::rms)},
+      {"raw median [m]", text(&ReferenceScores::median)},
+      {"aligned RMS [m]", text(&ReferenceScores::aligned_rms)},
+      {"middle run [ends]", runs_text(against.over_runs(&ReferenceScores::aligned_rms))},
+      {"aligned median [m]", text(&ReferenceScores::aligned_median)},
+      {"gated [m] (kept)", text(&ReferenceScores::aligned_gated_rms) + " (" + percent(kept) + ")"}};
+  if (any_heading(study)) {
+    row.push_back({"heading RMSE [deg]", text(&ReferenceScores::heading_rmse, 180.0 / kPi)});
+  }
+  return row;
+}
+
+std::vector<TextTable::Entry> map_row(const StudyAnalysis& study, const CellAnalysis& cell) {
+  const auto text = [&](std::string_view score) { return mean_text(cell.known_over_runs(score)); };
+  const auto mean = [&](const char* score) { return readable(cell.over_runs(score).mean); };
+  const Spread found = cell.known_over_runs("beacons_found");
+  const std::string beacons = " of " + std::to_string(study.beacons);
+  std::vector<TextTable::Entry> row = {
+      {"landmarks", count_text(cell.known_over_runs("map_landmarks"))}};
+  if (study.beacons > 0) {
+    row.push_back({"beacons found", found.summary.n == 0 ? "-" : count_text(found) + beacons});
+    row.push_back({"beacon error [m]", text("beacon_rms")});
+    row.push_back({"beacon error, aligned [m]", text("beacon_aligned_rms")});
+  }
+  row.push_back({"ESS", mean("ess")});
+  row.push_back({"ancestors", mean("ancestors_at_start_at_the_end")});
+  row.push_back({"CPU [s]", mean("cpu_seconds")});
+  return row;
+}
+
+/// What cells are compared by.
+double ReferenceScores::*compared_score(const JudgedReference& reference) {
+  return reference.compares_raw() ? &ReferenceScores::rms : &ReferenceScores::aligned_rms;
+}
+
+std::string against_baseline(std::size_t better, std::size_t runs) {
+  if (runs == 0) return "not tested";
+  if (better == runs) return "better in every run";
+  if (better == 0) return "better in no run";
+  return 2 * better == runs  ? "better in half of the runs"
+         : 2 * better > runs ? "better in most runs"
+                             : "worse in most runs";
+}
+
+std::vector<TextTable::Entry> baseline_row(const CellAnalysis& cell, const CellAnalysis* baseline,
+                                           const JudgedReference& reference) {
+  const ReferenceAnalysis& leading = cell.get<ReferenceAnalyses>().front();
+  std::vector<TextTable::Entry> row = {{"loses the map", lost_text(cell, leading)}};
+  if (baseline == nullptr) return row;
+  const auto score = compared_score(reference);
+  const double mean = baseline->get<ReferenceAnalyses>().front().over_runs(score).summary.mean;
+  const std::size_t better = leading.better_than(mean, score), runs = judged_runs(cell, leading);
+  const bool is_baseline = &cell == baseline;
+  row.push_back({"beats " + baseline->label, is_baseline ? "-" : of_text(better, runs)});
+  row.push_back({"against EKF-SLAM",
+                 is_baseline ? "is the baseline" : against_baseline(better, runs), Align::left});
+  return row;
+}
+
+/// "the drive", "2 of 3 drives".
+std::string drives_in_words(const StudyAnalysis& study, const JudgedReference& reference) {
+  if (study.own_drives == 0) return "the drive";
+  return std::to_string(reference.drives) + " of " + std::to_string(study.own_drives) + " drives";
+}
+
+std::string fixes_text(const StudyAnalysis& study) {
+  std::string text;
+  for (const JudgedReference& reference : study.references) {
+    text += (text.empty() ? "" : ", ") + reference.name + " has " +
+            std::to_string(reference.fixes) + " fixes within " + drives_in_words(study, reference);
+  }
+  return text;
+}
+
+std::string baseline_note(const StudyAnalysis& study) {
+  const JudgedReference& reference = study.references.front();
+  if (reference.fixes == 0) {
+    return prose("references", "no fix",
+                 {{"reference", reference.name},
+                  {"drive", study.own_drives == 0 ? "the drive" : "any drive"}});
+  }
+  const CellAnalysis* baseline = baseline_of(study);
+  if (baseline == nullptr) return prose("references", "no baseline");
+  const Spread compared =
+      baseline->get<ReferenceAnalyses>().front().over_runs(compared_score(reference));
+  return prose("references", reference.compares_raw() ? "raw baseline" : "aligned baseline",
+               {{"reference", reference.name},
+                {"baseline", baseline->label},
+                {"rms", readable(compared.summary.mean)}});
+}
+
+void add_spread(const std::string& name, const std::string& units, const Spread& spread,
+                Frame::Row& all) {
+  all.emplace_back(name + "_mean", units, spread.summary.mean);
+  all.emplace_back(name + "_standard_error", units, spread.summary.standard_error());
+  all.emplace_back(name + "_median", units, spread.median);
+  all.emplace_back(name + "_least", units, spread.least);
+  all.emplace_back(name + "_greatest", units, spread.greatest);
+}
+
+/// Numbers of the map, which are the same against every reference.
+bool is_of_the_map(const std::string& name) {
+  return name.starts_with("map_") || name.starts_with("beacon");
+}
+
+Frame references_frame(const StudyAnalysis& study) {
+  Frame frame;
+  for (const CellAnalysis& cell : study.cells) {
+    for (std::size_t r = 0; r < cell.get<ReferenceAnalyses>().size(); ++r) {
+      frame.add(
+          {{"cell", cell.label}, {"filter", cell.filter}, {"reference", study.references[r].name}},
+          reference_numbers(cell, r));
+    }
+  }
+  return frame;
+}
+
+/// One row for each fix of the leading reference, one column for each cell: RMS distance over runs.
+Frame reference_errors_frame(const StudyAnalysis& study) {
+  if (study.references.empty() || study.own_drives > 0) return {};
+  Frame frame{{{"time", "s", study.references.front().times}}};
+  for (const CellAnalysis& cell : study.cells) {
+    if (cell.complete == 0) continue;
+    frame.columns.push_back(
+        {cell.label, "m", cell.get<ReferenceAnalyses>().front().error_over_time});
+  }
+  return frame;
+}
+
+/// Nearer than this a reference cannot tell [m]: satellite positions are good to a centimetre.
+constexpr double kLeastError = 0.01;
+constexpr double kTwoDecades = 100.0;
+
+/// One axis for all panels, which begins at kLeastError where it is logarithmic.
+Scale scale_of(const std::vector<Panel>& panels) {
+  double least = std::numeric_limits<double>::infinity(), greatest = 0.0;
+  for (const Panel& panel : panels) {
+    for (const Curve& curve : panel.curves) {
+      for (const double value : curve.values) {
+        if (std::isnan(value)) continue;
+        least = std::min(least, std::max(value, kLeastError));
+        greatest = std::max(greatest, value);
+      }
+    }
+  }
+  return greatest > kTwoDecades * least ? Scale::logarithmic : Scale::from_zero;
+}
+
+/// Adds panels to a figure, which says so where there are several.
+void add(const std::vector<Panel>& panels, const std::vector<double>& times, Figure& figure) {
+  if (panels.size() > 1) figure.sentence += " " + prose("references", "panels");
+  add_panels(panels, times, figure);
+}
+
+/// The comparison uses the leading reference.
+template <double ReferenceScores::*kValue>
+double of_reference(const MeasuredRun& run) {
+  return run.references.empty() ? kNaN : run.references.front().scores.*kValue;
+}
+
+constexpr Score kReferencesScores[] = {
+    {"reference_rms", "m", "RMS distance to the reference", of_reference<&ReferenceScores::rms>},
+    {"reference_median", "m", "median distance to the reference",
+     of_reference<&ReferenceScores::median>},
+    {"reference_gated_rms", "m", "RMS distance to the reference without outliers",
+     of_reference<&ReferenceScores::gated_rms>},
+    {"reference_aligned_rms", "m", "RMS distance to the reference, aligned",
+     of_reference<&ReferenceScores::aligned_rms>},
+    {"reference_aligned_median", "m", "median distance to the reference, aligned",
+     of_reference<&ReferenceScores::aligned_median>},
+    {"reference_aligned_gated_rms", "m", "RMS distance to the reference without outliers, aligned",
+     of_reference<&ReferenceScores::aligned_gated_rms>},
+    {"reference_heading_rmse", "rad", "heading RMSE to the reference",
+     of_reference<&ReferenceScores::heading_rmse>},
+};
+
+class ReferencesOverRuns final : public MergedSums<ReferencesOverRuns> {
+ public:
+  explicit ReferencesOverRuns(const RunCriteria& criteria)
+      : references_(
+            criteria.references.size(),
+            ReferenceAccumulator(criteria.drives.empty() ? ReferenceAccumulator::Fixes::same
+                                                         : ReferenceAccumulator::Fixes::own)) {}
+  void add(const MeasuredRun& run) override {
+    for (std::size_t r = 0; r < references_.size(); ++r) references_[r].add(run.references[r]);
+  }
+  void put(CellAnalysis& cell) override {
+    ReferenceAnalyses all;
+    for (const ReferenceAccumulator& sums : references_) all.push_back(sums.result());
+    cell.findings.put(all);
+  }
+  static constexpr auto parts() { return std::tuple(added(&ReferencesOverRuns::references_)); }
+
+ private:
+  std::vector<ReferenceAccumulator> references_;
+};
+
+std::vector<Section> references_sections(const StudyAnalysis& study) {
+  if (study.has_truth && study.references.empty()) return {};
+  Section section = section_of("references");
+  if (!study.has_truth) section.add_html("<p>" + no_truth_sentence(study) + "</p>\n");
+  section.add("reference", reference_table(study));
+  section.add("baseline", baseline_table(study));
+  section.add("map", map_table(study));
+  section.add(reference_notes(study));
+  return {section};
+}
+
+}  // namespace
+
+Eigen::Vector2d RigidMotion::operator()(const Eigen::Vector2d& point) const {
+  return Eigen::Rotation2Dd(angle) * point + shift;
+}
+
+RigidMotion rigid_alignment(std::span<const Eigen::Vector2d> from,
+                            std::span<const Eigen::Vector2d> onto) {
+  expect(from.size() == onto.size(), "points are aligned in pairs");
+  RigidMotion motion;
+  if (from.empty()) return motion;
+  const Eigen::Vector2d centre = centre_of(from), target = centre_of(onto);
+  double along = 0.0, across = 0.0;  // sums of |a||b| cos and |a||b| sin of the angle from a to b
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    const Eigen::Vector2d a = from[i] - centre, b = onto[i] - target;
+    along = std::fma(a.x(), b.x(), std::fma(a.y(), b.y(), along));
+    across = std::fma(a.x(), b.y(), std::fma(-a.y(), b.x(), across));
+  }
+  motion.angle = std::atan2(across, along);
+  motion.shift = target - Eigen::Rotation2Dd(motion.angle) * centre;
+  return motion;
+}
+
+ReferenceRun measure_against(const PathAtFixes& fixes, std::span<const double> path) {
+  const std::vector<Pose> poses = fixes.interpolate(path);
+  const Points estimate = positions_of(poses);
+  ReferenceRun run;
+  if (poses.empty()) return run;
+  run.squared_error = squared_distances(estimate, fixes.positions());
+  const Distances raw = in_numbers(run.squared_error);
+  run.alignment = rigid_alignment(estimate, fixes.positions());
+  const Distances fitted =
+      in_numbers(squared_distances(moved_by(run.alignment, estimate), fixes.positions()));
+  run.scores = {raw.rms,          raw.median,         raw.gated_rms,
+                raw.gated_share,  fitted.rms,         fitted.median,
+                fitted.gated_rms, fitted.gated_share, heading_rmse(poses, fixes.headings())};
+  return run;
+}
+
+Spread ReferenceAnalysis::over_runs(double ReferenceScores::*score) const {
+  std::vector<double> values;
+  for (const ReferenceScores& run : runs) {
+    if (run.has_fixes()) values.push_back(run.*score);
+  }
+  return spread_of(values);
+}
+
+std::size_t ReferenceAnalysis::with_fixes() const {
+  return static_cast<std::size_t>(std::ranges::count_if(runs, &ReferenceScores::has_fixes));
+}
+
+std::size_t ReferenceAnalysis::lost() const {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      runs, [](const ReferenceScores& run) { return run.has_fixes() && run.lost(); }));
+}
+
+std::size_t ReferenceAnalysis::better_than(double baseline, double ReferenceScores::*score) const {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      runs, [&](const ReferenceScores& run) { return run.*score < baseline; }));
+}
+
+void ReferenceAccumulator::add(const ReferenceRun& run) {
+  runs_.push_back(run.scores);
+  if (fixes_ == Fixes::own) return;
+  squared_.resize(run.squared_error.size());
+  for (std::size_t f = 0; f < squared_.size(); ++f) squared_[f] += run.squared_error[f];
+}
+
+ReferenceAnalysis ReferenceAccumulator::result() const {
+  ReferenceAnalysis analysis{runs_, squared_};
+  for (double& error : analysis.error_over_time) {
+    error = std::sqrt(error / static_cast<double>(runs_.size()));
+  }
+  return analysis;
+}
+
+const CellAnalysis* baseline_of(const StudyAnalysis& study) {
+  const auto found = std::ranges::find_if(study.cells, [](const CellAnalysis& cell) {
+    return cell.filter == "ekf_slam" && cell.complete > 0 && !cell.get<ReferenceAnalyses>().empty();
+  });
+  return found == study.cells.end() ? nullptr : &*found;
+}
+
+TextTable reference_table(const StudyAnalysis& study) {
+  TextTable table{.keys = 2};
+  for (const CellAnalysis& cell : study.cells) {
+    for (std::size_t r = 0; r < cell.get<ReferenceAnalyses>().size(); ++r) {
+      table.add(reference_row(study, cell, r));
+    }
+  }
+  return table;
+}
+
+TextTable map_table(const StudyAnalysis& study) {
+  return cell_table(study, [&](const CellAnalysis& cell) { return map_row(study, cell); });
+}
+
+TextTable baseline_table(const StudyAnalysis& study) {
+  if (study.references.empty() || study.references.front().fixes == 0) return {};
+  const CellAnalysis* baseline = baseline_of(study);
+  return cell_table(study, [&](const CellAnalysis& cell) {
+    return baseline_row(cell, baseline, study.references.front());
+  });
+}
+
+std::string no_truth_sentence(const StudyAnalysis& study) {
+  const bool has_errors = std::ranges::any_of(study.references, &JudgedReference::has_errors);
+  return prose("references", has_errors ? "known errors" : "no truth");
+}
+
+std::vector<std::string> reference_notes(const StudyAnalysis& study) {
+  std::vector<std::string> notes;
+  const auto add = [&](const char* key, const Values& values = {}) {
+    std::ranges::move(paragraphs("references", key, values), std::back_inserter(notes));
+  };
+  if (!study.references.empty()) {
+    add("fixes", {{"fixes", fixes_text(study)}});
+    const char* runs = study.own_drives > 0 ? "own drives" : "same drive";
+    add("distances", {{"gate", readable(kReferenceGate, 1)},
+                      {"runs", prose("references", runs)},
+                      {"lost", readable(kLostBeyond, 2)}});
+    notes.push_back(baseline_note(study));
+  }
+  if (study.beacons > 0) add("beacons", {{"distance", readable(kFoundWithin, 1)}});
+  if (study.own_drives > 0) add("no series");
+  add("map");
+  return notes;
+}
+
+Frame::Row reference_numbers(const CellAnalysis& cell, std::size_t reference) {
+  const ReferenceAnalysis& against = cell.get<ReferenceAnalyses>()[reference];
+  const auto count = [](std::size_t n) { return static_cast<double>(n); };
+  const bool judged = cell.complete == 0 || against.with_fixes() > 0;
+  const std::size_t lost = against.lost() + cell.failures.size();
+  Frame::Row all = {{"runs_failed", "1", count(cell.failures.size())},
+                    {"runs_complete", "1", count(cell.complete)},
+                    {"runs_lost", "1", judged ? count(lost) : kNaN}};
+  const auto one = [&](const char* name, const char* units, double ReferenceScores::*score) {
+    add_spread(name, units, against.over_runs(score), all);
+  };
+  one("rms", "m", &ReferenceScores::rms);
+  one("median_error", "m", &ReferenceScores::median);
+  one("gated_rms", "m", &ReferenceScores::gated_rms);
+  one("gated_share", "1", &ReferenceScores::gated_share);
+  one("aligned_rms", "m", &ReferenceScores::aligned_rms);
+  one("aligned_median_error", "m", &ReferenceScores::aligned_median);
+  one("aligned_gated_rms", "m", &ReferenceScores::aligned_gated_rms);
+  one("aligned_gated_share", "1", &ReferenceScores::aligned_gated_share);
+  one("heading_rmse", "rad", &ReferenceScores::heading_rmse);
+  for (const Score& score : all_scores()) {
+    if (!is_of_the_map(score.name)) continue;
+    add_spread(score.name, score.units, cell.known_over_runs(score.name), all);
+  }
+  all.emplace_back("cpu_seconds_mean", "s", cell.over_runs("cpu_seconds").mean);
+  return all;
+}
+
+Figure reference_error_figure(const StudyAnalysis& study) {
+  if (study.references.empty() || study.own_drives > 0) return {};
+  const JudgedReference& reference = study.references.front();
+  Figure figure = figure_of("reference_error", {{"reference", reference.name}});
+  const Panel blank{"reference_error", "distance to " + reference.name + " [m]", {}, {}, {},
+                    kLeastError};
+  std::vector<Panel> panels = cell_panels(study, blank, [](const CellAnalysis& cell) {
+    return cell.complete == 0 ? std::vector<double>{}
+                              : cell.get<ReferenceAnalyses>().front().error_over_time;
+  });
+  if (panels.empty()) return figure;
+  const Scale scale = scale_of(panels);
+  for (Panel& panel : panels) panel.scale = scale;
+  add(panels, reference.times, figure);
+  return figure;
+}
+
+Figure map_size_figure(const StudyAnalysis& study) {
+  Figure figure = figure_of("map_size");
+  const std::vector<Panel> panels =
+      cell_panels(study, {"map_size", "landmarks", {}, {}, Scale::from_zero},
+                  [](const CellAnalysis& cell) { return cell.over_time("map_landmarks"); });
+  if (!panels.empty()) add(panels, study.times, figure);
+  return figure;
+}
+
+Metric references_metric() {
+  return {.scores = kReferencesScores,
+          .scores_are_numbers = false,
+          .sums = make_sums<ReferencesOverRuns>,
+          .sections = references_sections,
+          .figures =
+              [](const StudyAnalysis& study) {
+                return std::vector{reference_error_figure(study), map_size_figure(study)};
+              },
+          .files = {{"references.csv", references_frame},
+                    {"reference_errors.csv", reference_errors_frame}}};
+}
+
+}  // namespace montecarta::analysis
