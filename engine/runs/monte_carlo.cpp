@@ -60,12 +60,6 @@ namespace {
 constexpr int kSomeRunsFailed = 3;
 constexpr int kCheckpoint = 85;
 
-std::uint64_t sum(const RunOutcome& outcome, std::uint64_t CellOutcome::*count) {
-  std::uint64_t total = 0;
-  for (const CellOutcome& cell : outcome.cells) total += cell.*count;
-  return total;
-}
-
 ResultWriter open_output(const StudyPlan& plan, const RunOptions& options) {
   if (options.attempt) return ResultWriter::attempt(options.output, plan, options.provenance);
   if (options.resume) return ResultWriter::resume(options.output, plan, options.provenance);
@@ -73,33 +67,11 @@ ResultWriter open_output(const StudyPlan& plan, const RunOptions& options) {
                               options.force ? Existing::replace : Existing::refuse);
 }
 
-CellOutcome outcome_of(const StudyPlan& plan, std::size_t cell, const ResultWriter& writer) {
-  CellOutcome outcome{.label = plan.cells[cell].label};
-  for (std::size_t i = 0; i < plan.runs_here(); ++i) {
-    const RunStatus status = writer.status(cell, i);
-    if (status == RunStatus::complete) ++outcome.complete;
-    if (status == RunStatus::failed) ++outcome.failed;
-    if (status == RunStatus::missing) ++outcome.missing;
-    if (status == RunStatus::spared) ++outcome.spared;
-  }
-  return outcome;
-}
-
-RunOutcome stored_outcome(const StudyPlan& plan, const ResultWriter& writer) {
-  RunOutcome outcome;
-  for (std::size_t c = 0; c < plan.cells.size(); ++c)
-    outcome.cells.push_back(outcome_of(plan, c, writer));
-  return outcome;
-}
-
-RunCounts counts_of(const RunOutcome& outcome) {
+RunCounts stored_counts(const StudyPlan& plan, const ResultWriter& writer) {
   RunCounts counts;
-  for (const CellOutcome& cell : outcome.cells) {
-    counts.done += cell.complete;
-    counts.failed += cell.failed;
-    counts.total += cell.complete + cell.failed + cell.missing;
+  for (std::size_t cell = 0; cell < plan.cells.size(); ++cell) {
+    for (std::size_t i = 0; i < plan.runs_here(); ++i) counts.add(writer.status(cell, i));
   }
-  counts.earlier = counts.ended();
   return counts;
 }
 
@@ -136,12 +108,12 @@ class Stopwatch {
 };
 
 /// Runs until no run is missing or a stop is requested.
-void run_missing(const StudyPlan& plan, const RunOptions& options, const RunOutcome& before,
+void run_missing(const StudyPlan& plan, const RunOptions& options, const RunCounts& before,
                  ResultWriter& writer, StopRequest& stop, const Watch::Orders& orders) {
   const std::vector<RecordLayout> layouts = layouts_of(plan, Detail::usual);
   const std::vector<RecordLayout> full_layouts = layouts_of(plan, Detail::full);
-  const std::size_t n_workers = workers_for(plan, options.parallel, before.missing());
-  Progress progress(options.quiet ? ProgressStyle::none : options.progress, counts_of(before));
+  const std::size_t n_workers = workers_for(plan, options.parallel, before.missing);
+  Progress progress(options.quiet ? ProgressStyle::none : options.progress, before);
   const Watch watch(orders, stop, progress);
   for (const std::uint64_t runs : rounds_of(plan)) {
     TaskList tasks(plan, runs, writer);
@@ -156,7 +128,7 @@ void run_missing(const StudyPlan& plan, const RunOptions& options, const RunOutc
 
 void close_output(ResultWriter& writer, const RunOutcome& outcome) {
   writer.note_wall_seconds(outcome.seconds);
-  if (outcome.missing() == 0) return writer.finish();
+  if (outcome.counts.missing == 0) return writer.finish();
   expect(outcome.stopped != StopReason::complete, "runs are missing though nobody asked to stop");
   writer.suspend();
 }
@@ -167,15 +139,10 @@ void tell(const std::vector<std::string>& notes) {
 
 }  // namespace
 
-std::uint64_t RunOutcome::failed() const { return sum(*this, &CellOutcome::failed); }
-std::uint64_t RunOutcome::missing() const { return sum(*this, &CellOutcome::missing); }
-
-std::uint64_t RunOutcome::ended() const { return sum(*this, &CellOutcome::complete) + failed(); }
-
 int exit_code(const RunOutcome& outcome, bool under_scheduler) {
   switch (outcome.stopped) {
     case StopReason::complete:
-      return outcome.failed() > 0 ? kSomeRunsFailed : EXIT_SUCCESS;
+      return outcome.counts.failed > 0 ? kSomeRunsFailed : EXIT_SUCCESS;
     case StopReason::time_budget:
       return kCheckpoint;
     case StopReason::sigterm:
@@ -197,16 +164,16 @@ RunOutcome run_study(const StudyPlan& plan, const RunOptions& options) {
                                                          : Interruption::From::person);
   ResultWriter writer = open_output(plan, options);
   if (!options.quiet) tell(writer.notes());
-  const RunOutcome before = stored_outcome(plan, writer);
+  const RunCounts before = stored_counts(plan, writer);
   StopRequest stop;
-  if (before.missing() > 0) {
+  if (before.missing > 0) {
     std::optional<double> left = options.time_budget;
     if (left) *left -= stopwatch.seconds();
     run_missing(plan, options, before, writer, stop, {interruption, left});
   }
-  RunOutcome outcome = stored_outcome(plan, writer);
-  if (outcome.missing() > 0) outcome.stopped = stop.reason();
-  outcome.runs_here = outcome.ended() - before.ended();
+  RunOutcome outcome{.counts = stored_counts(plan, writer)};
+  if (outcome.counts.missing > 0) outcome.stopped = stop.reason();
+  outcome.runs_here = outcome.counts.ended() - before.ended();
   outcome.seconds = stopwatch.seconds();
   close_output(writer, outcome);
   return outcome;

@@ -29,25 +29,12 @@ std::vector<std::uint64_t> rounds_of(std::uint64_t runs);
 std::uint64_t spare_what_is_enough(const StudyPlan& plan, std::uint64_t runs,
                                    const Parallel& parallel, ResultWriter& writer);
 
-/// Numbers of runs of one cell.
-struct CellOutcome {
-  std::string label;
-  std::uint64_t complete = 0;
-  std::uint64_t failed = 0;
-  std::uint64_t missing = 0;
-  std::uint64_t spared = 0;  ///< not needed
-};
-
 /// The result of a session of a study.
 struct RunOutcome {
   StopReason stopped = StopReason::complete;
-  std::vector<CellOutcome> cells;  ///< in the order of the plan, including earlier sessions
-  std::uint64_t runs_here = 0;     ///< complete or failed in this session, counted for each cell
-  double seconds = 0.0;            ///< wall time of this session
-
-  std::uint64_t failed() const;
-  std::uint64_t missing() const;
-  std::uint64_t ended() const;  ///< complete or failed
+  RunCounts counts = {};        ///< of all cells, including earlier sessions
+  std::uint64_t runs_here = 0;  ///< complete or failed in this session
+  double seconds = 0.0;         ///< wall time of this session
 };
 
 /// Exit code of the program: 0 done, 3 done with some failed runs, 85 stopped at a checkpoint (by

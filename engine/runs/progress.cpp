@@ -35,8 +35,8 @@ std::string print(const char* format, Values... values) {
 }
 
 double share(const RunCounts& counts) {
-  if (counts.total == 0) return 1.0;
-  return static_cast<double>(counts.ended()) / static_cast<double>(counts.total);
+  if (counts.total() == 0) return 1.0;
+  return static_cast<double>(counts.ended()) / static_cast<double>(counts.total());
 }
 
 std::string rate_in_words(double per_second) {
@@ -51,6 +51,13 @@ std::string bar(double filled, std::size_t width) {
 
 }  // namespace
 
+void RunCounts::add(RunStatus status) {
+  ++(status == RunStatus::complete  ? complete
+     : status == RunStatus::failed  ? failed
+     : status == RunStatus::missing ? missing
+                                    : spared);
+}
+
 Progress::Form Progress::form_of(ProgressStyle style, std::FILE* out) {
   if (style == ProgressStyle::none) return Form::none;
   return style == ProgressStyle::automatic && is_smart_terminal(out) ? Form::bar : Form::plain;
@@ -60,7 +67,7 @@ Progress::Progress(ProgressStyle style, const RunCounts& at_start, std::FILE* ou
     : form_(form_of(style, out)), at_start_(at_start), out_(out) {}
 
 void Progress::run_ended(RunStatus status) {
-  (status == RunStatus::failed ? failed_ : done_).fetch_add(1, std::memory_order_relaxed);
+  (status == RunStatus::failed ? failed_ : complete_).fetch_add(1, std::memory_order_relaxed);
 }
 
 void Progress::runs_spared(std::uint64_t runs) {
@@ -69,9 +76,10 @@ void Progress::runs_spared(std::uint64_t runs) {
 
 RunCounts Progress::counts() const {
   RunCounts counts = at_start_;
-  counts.done += done_.load(std::memory_order_relaxed);
+  counts.complete += complete_.load(std::memory_order_relaxed);
   counts.failed += failed_.load(std::memory_order_relaxed);
-  counts.total -= spared_.load(std::memory_order_relaxed);
+  counts.spared += spared_.load(std::memory_order_relaxed);
+  counts.missing = at_start_.total() + at_start_.spared - counts.ended() - counts.spared;
   return counts;
 }
 
@@ -96,7 +104,7 @@ void Progress::show_bar(double now) {
   // The last column stays empty, because some terminals wrap when it is written. ESC [ K clears the
   // rest of the line.
   const std::size_t width = terminal_width(fileno(out_)).value_or(80) - 1;
-  const std::string line = progress_bar(counts(), now, width);
+  const std::string line = progress_bar(counts(), at_start_.ended(), now, width);
   std::fprintf(out_, "\r%s\x1b[K", line.c_str());
   std::fflush(out_);
 }
@@ -104,11 +112,8 @@ void Progress::show_bar(double now) {
 void Progress::show_plain(double now) {
   last_shown_ = now;
   const RunCounts current = counts();
-  const double percent = current.total == 0 ? 100.0
-                                            : 100.0 * static_cast<double>(current.ended()) /
-                                                  static_cast<double>(current.total);
-  std::fprintf(out_, "%3d %%  %s\n", static_cast<int>(percent),
-               progress_words(current, now).c_str());
+  std::fprintf(out_, "%3d %%  %s\n", static_cast<int>(100.0 * share(current)),
+               progress_words(current, at_start_.ended(), now).c_str());
   std::fflush(out_);
 }
 
@@ -125,23 +130,24 @@ std::string duration_in_words(double seconds) {
   return print("%.1f d", whole / 86400.0);
 }
 
-std::string progress_words(const RunCounts& counts, double seconds) {
-  std::string words = std::to_string(counts.ended()) + '/' + std::to_string(counts.total) + " runs";
+std::string progress_words(const RunCounts& counts, std::uint64_t earlier, double seconds) {
+  std::string words =
+      std::to_string(counts.ended()) + '/' + std::to_string(counts.total()) + " runs";
   if (counts.failed > 0) words += ", " + std::to_string(counts.failed) + " failed";
-  const std::uint64_t here = counts.ended() - counts.earlier;
+  const std::uint64_t here = counts.ended() - earlier;
   if (here == 0 || !(seconds > 0.0)) return words;
   const double rate = static_cast<double>(here) / seconds;
   words += ", " + rate_in_words(rate);
-  const std::uint64_t left = counts.total - counts.ended();
-  if (left == 0) return words + " in " + duration_in_words(seconds);
-  return words + ", " + duration_in_words(static_cast<double>(left) / rate) + " left";
+  if (counts.missing == 0) return words + " in " + duration_in_words(seconds);
+  return words + ", " + duration_in_words(static_cast<double>(counts.missing) / rate) + " left";
 }
 
-std::string progress_bar(const RunCounts& counts, double seconds, std::size_t width) {
+std::string progress_bar(const RunCounts& counts, std::uint64_t earlier, double seconds,
+                         std::size_t width) {
   const double filled = share(counts);
   // Rounded down, so that 100 % means that no run is left.
   std::string line =
-      print("%3.0f %%  ", std::floor(100.0 * filled)) + progress_words(counts, seconds);
+      print("%3.0f %%  ", std::floor(100.0 * filled)) + progress_words(counts, earlier, seconds);
   const std::size_t room = width > line.size() + 3 ? width - line.size() - 3 : 0;
   if (room >= kNarrowestBar) line = bar(filled, std::min(room, kWidestBar)) + ' ' + line;
   return line.substr(0, width);

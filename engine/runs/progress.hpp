@@ -17,25 +17,26 @@
 
 namespace montecarta::engine {
 
-/// Progress of a study. A run is counted once for every cell.
+/// Numbers of runs in each state. A run is counted once for every cell.
 struct RunCounts {
-  std::uint64_t done = 0;    ///< complete, including earlier sessions
-  std::uint64_t failed = 0;  ///< including earlier sessions
-  std::uint64_t total = 0;
-  std::uint64_t earlier = 0;  ///< done or failed before this session
+  std::uint64_t complete = 0, failed = 0, missing = 0, spared = 0;
 
-  std::uint64_t ended() const { return done + failed; }
+  std::uint64_t ended() const { return complete + failed; }
+  /// Number of runs that are needed.
+  std::uint64_t total() const { return ended() + missing; }
+  void add(RunStatus status);
 };
 
 /// Seconds in words of at most 8 characters: "12 s", "3:05 min", "12:40 h", "3.4 d".
 std::string duration_in_words(double seconds);
 
-/// "1350/3000 runs, 2 failed, 85.2/s, 19 s left" after `seconds` of this session.
-std::string progress_words(const RunCounts& counts, double seconds);
-
+/// "1350/3000 runs, 2 failed, 85.2/s, 19 s left" after `seconds` of this session, before which
+/// `earlier` runs had ended.
+std::string progress_words(const RunCounts& counts, std::uint64_t earlier, double seconds);
 /// A bar, the percentage and the words, with at most `width` characters. If they do not fit, the
 /// bar is left out first.
-std::string progress_bar(const RunCounts& counts, double seconds, std::size_t width);
+std::string progress_bar(const RunCounts& counts, std::uint64_t earlier, double seconds,
+                         std::size_t width);
 
 enum class ProgressStyle { automatic, plain, none };
 
@@ -75,7 +76,7 @@ class Progress {
   std::FILE* out_;
   Clock::time_point begin_ = Clock::now();
   double last_shown_ = 0.0;  ///< [s] since begin
-  std::atomic<std::uint64_t> done_{0};
+  std::atomic<std::uint64_t> complete_{0};
   std::atomic<std::uint64_t> failed_{0};
   std::atomic<std::uint64_t> spared_{0};
 };

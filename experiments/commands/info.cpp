@@ -47,7 +47,7 @@ void print_study(const ResultFile& file) {
 void print_cells(const ResultFile& file) {
   std::vector<TableRow> rows{{"cell", "complete", "failed", "missing", "spared"}};
   for (const StoredCell& cell : file.cells()) {
-    const StatusCounts counts = count_status(file.status(cell));
+    const RunCounts counts = count_status(file.status(cell));
     rows.push_back({cell.label, std::to_string(counts.complete), std::to_string(counts.failed),
                     std::to_string(counts.missing), std::to_string(counts.spared)});
   }

@@ -108,7 +108,7 @@ int replay(const Arguments& arguments) {
   const auto departs = departure(file, study, cell, run, programs);
   const StudyPlan plan = make_plan(whole, RunRange{run, run + 1}, programs);
   const RunOutcome outcome = run_study(plan, options_of(arguments, output));
-  if (outcome.missing() > 0) return exit_code(outcome, runs_under_scheduler());
+  if (outcome.counts.missing > 0) return exit_code(outcome, runs_under_scheduler());
   std::cerr << "montecarta: run " << run << " of " << label << " with everything recorded, "
             << bytes_text(static_cast<double>(std::filesystem::file_size(output))) << ", stored in "
             << output << "\n";

@@ -87,7 +87,7 @@ RunOptions options_of(const Study& study, const Arguments& arguments) {
 
 void tell_how_to_resume(const RunOutcome& outcome, const RunOptions& options,
                         const Arguments& arguments) {
-  std::cerr << "montecarta: stopped; " << outcome.missing()
+  std::cerr << "montecarta: stopped; " << outcome.counts.missing
             << " runs are missing, the finished ones are in " << part_of(options.output).string()
             << ". Continue with:\n  " << resuming_command(arguments) << "\n";
 }
@@ -131,7 +131,7 @@ int run(const Arguments& arguments) {
   programs_of(study, arguments);
   const StudyPlan plan = plan_of(study, arguments);
   const RunOutcome outcome = run_study(plan, options);
-  if (outcome.missing() > 0) {
+  if (outcome.counts.missing > 0) {
     tell_how_to_resume(outcome, options, arguments);
     return exit_code(outcome, runs_under_scheduler());
   }

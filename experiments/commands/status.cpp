@@ -40,7 +40,7 @@ class StudyStatus {
   void print() const {
     std::vector<TableRow> rows{{"cell", "complete", "failed", "missing", "all", "spared"}};
     for (std::size_t c = 0; c < labels_.size(); ++c) {
-      const StatusCounts counts = count_status(status_[c]);
+      const RunCounts counts = count_status(status_[c]);
       rows.push_back({labels_[c], std::to_string(counts.complete), std::to_string(counts.failed),
                       std::to_string(counts.missing), std::to_string(status_[c].size()),
                       std::to_string(counts.spared)});
@@ -76,12 +76,9 @@ std::string defect_of(const ResultFile& file) {
 }
 
 std::string line_of(const ResultFile& file, Depth depth) {
-  StatusCounts all;
+  RunCounts all;
   for (const StoredCell& cell : file.cells()) {
-    const StatusCounts counts = count_status(file.status(cell));
-    all.complete += counts.complete;
-    all.failed += counts.failed;
-    all.missing += counts.missing;
+    for (const RunStatus each : file.status(cell)) all.add(each);
   }
   const std::string flaw = depth == Depth::every_byte ? defect_of(file) : "";
   const char* state = !flaw.empty() ? "damaged" : all.missing > 0 ? "unfinished" : "complete";

@@ -29,12 +29,10 @@ void print_where_to_look(const std::string& name, const std::string& page) {
             << "More: montecarta analyze " << file << " --all (or --table NAME)\n";
 }
 
-StatusCounts count_status(const std::vector<RunStatus>& status) {
-  const auto count = [&](RunStatus wanted) {
-    return static_cast<std::size_t>(std::ranges::count(status, wanted));
-  };
-  return {count(RunStatus::complete), count(RunStatus::failed), count(RunStatus::missing),
-          count(RunStatus::spared)};
+RunCounts count_status(const std::vector<RunStatus>& status) {
+  RunCounts counts;
+  for (const RunStatus each : status) counts.add(each);
+  return counts;
 }
 
 std::vector<TableRow> without_idle_spared(std::vector<TableRow> rows) {

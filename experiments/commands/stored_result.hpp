@@ -3,6 +3,7 @@
 
 #include "analysis/output/text_table.hpp"
 #include "engine/records/result_file.hpp"
+#include "engine/runs/progress.hpp"
 #include "experiments/commands/arguments.hpp"
 #include "experiments/study/study.hpp"
 
@@ -17,14 +18,8 @@ ResultFile open_stored(const std::string& name);
 /// prints how to draw the report.
 void print_where_to_look(const std::string& name, const std::string& page);
 
-/// Number of runs of a cell in each state.
-struct StatusCounts {
-  std::size_t complete = 0;
-  std::size_t failed = 0;
-  std::size_t missing = 0;
-  std::size_t spared = 0;
-};
-StatusCounts count_status(const std::vector<RunStatus>& status);
+/// Numbers of runs of a cell in each state.
+RunCounts count_status(const std::vector<RunStatus>& status);
 
 /// Removes the last column of a table, which counts spared runs, if no cell has any.
 std::vector<TableRow> without_idle_spared(std::vector<TableRow> rows);

@@ -96,9 +96,7 @@ TEST_F(WatchTest, TakesABudgetLongerThanTheClockCanCount) {
 }
 
 RunOutcome stopped_by(StopReason reason) {
-  return {.stopped = reason,
-          .cells = {{.label = "a", .complete = 3, .failed = 1, .missing = 2},
-                    {.label = "b", .complete = 4, .failed = 0, .missing = 2}}};
+  return {.stopped = reason, .counts = {.complete = 7, .failed = 1, .missing = 4}};
 }
 
 TEST(RunOutcome, HasTheExitCodesOfTheCommandLine) {

@@ -39,9 +39,8 @@ TEST_F(MonteCarlo, StoresFailuresAndGoesOn) {
   const RunOutcome outcome = run_study(plan, options("study.h5"));
   EXPECT_EQ(outcome.stopped, StopReason::complete);
   EXPECT_EQ(outcome.runs_here, 12U);
-  EXPECT_EQ(outcome.cells[0].complete, 5U);
-  EXPECT_EQ(outcome.cells[0].failed, 1U);
-  EXPECT_EQ(outcome.cells[1].complete, 6U);
+  EXPECT_EQ(outcome.counts.complete, 11U);
+  EXPECT_EQ(outcome.counts.failed, 1U);
   EXPECT_EQ(exit_code(outcome, false), 3);
 
   const ResultFile file(folder / "study.h5");
@@ -107,13 +106,13 @@ TEST_F(MonteCarlo, GivesTheSameBitsInterruptedAndResumed) {
     const RunOutcome first = run_study(plan, how);
     EXPECT_EQ(exit_code(first, false), 128 + signal);
     EXPECT_GT(first.runs_here, 0U);
-    EXPECT_GT(first.missing(), 0U);
+    EXPECT_GT(first.counts.missing, 0U);
     EXPECT_FALSE(std::filesystem::exists(how.output));
 
     how.resume = true;
     const RunOutcome second = run_study(plan, how);
     EXPECT_EQ(second.stopped, StopReason::complete);
-    EXPECT_EQ(second.runs_here, first.missing());
+    EXPECT_EQ(second.runs_here, first.counts.missing);
     EXPECT_EQ(difference(whole, ResultFile(how.output)), "");
   }
 }
@@ -126,10 +125,10 @@ TEST_F(MonteCarlo, StopsAtTheTimeBudgetAndGoesOnLater) {
   const RunOutcome first = run_study(plan, how);
   EXPECT_EQ(first.stopped, StopReason::time_budget);
   EXPECT_EQ(exit_code(first, false), 85);
-  EXPECT_GT(first.missing(), 0U);
+  EXPECT_GT(first.counts.missing, 0U);
   how.time_budget.reset();
   how.resume = true;
-  EXPECT_EQ(run_study(plan, how).runs_here, first.missing());
+  EXPECT_EQ(run_study(plan, how).runs_here, first.counts.missing);
 }
 
 TEST_F(MonteCarlo, HasNothingToDoWhereNothingIsMissing) {
@@ -203,10 +202,9 @@ TEST_F(Rounds, SpareWhatIsEnough) {
   const StudyPlan plan = stopping_plan();
   const RunOutcome outcome = run_study(plan, options("study.h5"));
   EXPECT_EQ(outcome.stopped, StopReason::complete);
-  EXPECT_EQ(outcome.cells[0].complete, 63U);
-  EXPECT_EQ(outcome.cells[0].failed, 1U);
-  EXPECT_EQ(outcome.cells[0].spared, kRunsOfRounds - 64);
-  EXPECT_EQ(outcome.cells[1].complete, kRunsOfRounds);
+  EXPECT_EQ(outcome.counts.complete, 63 + kRunsOfRounds);
+  EXPECT_EQ(outcome.counts.failed, 1U);
+  EXPECT_EQ(outcome.counts.spared, kRunsOfRounds - 64);
   EXPECT_EQ(outcome.runs_here, 64 + kRunsOfRounds);
   const ResultFile file(folder / "study.h5");
   const std::vector<RunStatus> status = file.status(file.cells()[0]);
@@ -248,7 +246,7 @@ TEST_F(Rounds, GiveTheSameBitsInterruptedAndResumed) {
   for (const std::uint64_t at_runs : {32, 64, 128}) {
     RunOptions how = options("interrupted" + std::to_string(at_runs), 2);
     const RunOutcome first = run_study(disturbed_plan(1, at_runs, SIGINT), how);
-    EXPECT_GT(first.missing(), 0U);
+    EXPECT_GT(first.counts.missing, 0U);
     how.resume = true;
     EXPECT_EQ(difference(whole, results_of(stopping_plan(), how)), "") << at_runs;
   }

@@ -29,7 +29,7 @@ std::string text_of(std::FILE* file) {
 /// The progress that a study of `total` runs, which end one by one, writes to a file.
 std::string shown_of(ProgressStyle style, std::uint64_t total) {
   const File file(std::tmpfile(), std::fclose);
-  Progress progress(style, {.total = total}, file.get());
+  Progress progress(style, {.missing = total}, file.get());
   for (std::uint64_t run = 0; run < total; ++run) {
     progress.run_ended(run == 0 ? RunStatus::failed : RunStatus::complete);
     progress.show();
@@ -46,7 +46,7 @@ TEST(Progress, WritesAtMostOnePlainLineAMinuteOrNone) {
 }
 
 TEST(Progress, CountsFromManyThreads) {
-  Progress progress(ProgressStyle::none, {.done = 5, .failed = 1, .total = 4006, .earlier = 6});
+  Progress progress(ProgressStyle::none, {.complete = 5, .failed = 1, .missing = 4000});
   const auto end_runs = [&] {
     for (int i = 0; i < 1000; ++i) progress.run_ended(RunStatus::complete);
     for (int i = 0; i < 1000; ++i) progress.run_ended(RunStatus::failed);
@@ -54,7 +54,7 @@ TEST(Progress, CountsFromManyThreads) {
   std::thread other(end_runs);
   end_runs();
   other.join();
-  EXPECT_EQ(progress.counts().done, 2005U);
+  EXPECT_EQ(progress.counts().complete, 2005U);
   EXPECT_EQ(progress.counts().failed, 2001U);
 }
 
@@ -97,7 +97,7 @@ TEST(Progress, RedrawsOneLineOnATerminalWithinItsWidth) {
   const Terminal terminal;
   if (!terminal.inside) GTEST_SKIP() << "this machine gives no pseudo terminal";
   const auto began = std::chrono::steady_clock::now();
-  Progress progress(ProgressStyle::automatic, {.total = 20}, terminal.inside.get());
+  Progress progress(ProgressStyle::automatic, {.missing = 20}, terminal.inside.get());
   for (int i = 0; i < 20; ++i) {
     progress.run_ended(RunStatus::complete);
     progress.show();  // not drawn within a tenth of a second of the last time
@@ -126,21 +126,23 @@ TEST(ProgressLine, PutsDurationsInWords) {
 }
 
 TEST(ProgressLine, TellsCountsRateAndTime) {
-  EXPECT_EQ(progress_words({.done = 148, .failed = 2, .total = 300, .earlier = 50}, 10.0),
+  EXPECT_EQ(progress_words({.complete = 148, .failed = 2, .missing = 150}, 50, 10.0),
             "150/300 runs, 2 failed, 10/s, 15 s left");
-  EXPECT_EQ(progress_words({.done = 50, .total = 300, .earlier = 50}, 10.0), "50/300 runs");
-  EXPECT_EQ(progress_words({.done = 300, .total = 300}, 10.0), "300/300 runs, 30/s in 10 s");
-  EXPECT_EQ(progress_words({.done = 1, .total = 2}, 600.0), "1/2 runs, 6/h, 10:00 min left");
+  EXPECT_EQ(progress_words({.complete = 50, .missing = 250}, 50, 10.0), "50/300 runs");
+  EXPECT_EQ(progress_words({.complete = 300}, 0, 10.0), "300/300 runs, 30/s in 10 s");
+  EXPECT_EQ(progress_words({.complete = 1, .missing = 1}, 0, 600.0),
+            "1/2 runs, 6/h, 10:00 min left");
 }
 
 TEST(ProgressLine, DrawsABarWhereItFitsAndNeverExceedsTheWidth) {
-  const RunCounts half{.done = 150, .total = 300};
-  EXPECT_EQ(progress_bar(half, 10.0, 200),
+  const RunCounts half{.complete = 150, .missing = 150};
+  EXPECT_EQ(progress_bar(half, 0, 10.0, 200),
             "[####################....................]  50 %  150/300 runs, 15/s, 10 s left");
-  EXPECT_EQ(progress_bar(half, 10.0, 40), " 50 %  150/300 runs, 15/s, 10 s left");
+  EXPECT_EQ(progress_bar(half, 0, 10.0, 40), " 50 %  150/300 runs, 15/s, 10 s left");
   for (std::size_t width = 0; width < 120; ++width)
-    EXPECT_LE(progress_bar({.done = 123, .failed = 7, .total = 1000}, 3.0, width).size(), width);
-  EXPECT_EQ(progress_bar({.done = 9999, .total = 10000}, 1.0, 12), " 99 %  9999/");
+    EXPECT_LE(progress_bar({.complete = 123, .failed = 7, .missing = 870}, 0, 3.0, width).size(),
+              width);
+  EXPECT_EQ(progress_bar({.complete = 9999, .missing = 1}, 0, 1.0, 12), " 99 %  9999/");
 }
 
 }  // namespace
