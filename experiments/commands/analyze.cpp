@@ -55,7 +55,9 @@ void print(const StudyAnalysis& study, const std::string& name, const Arguments&
   }
 }
 
-int analyze_files(const Arguments& arguments) {
+}  // namespace
+
+int analyze_command(const Arguments& arguments) {
   const double level = arguments.number("level", 1e-9, 1.0 - 1e-9).value_or(0.95);
   const auto within = arguments.number("within", kLeastMargin, kMostMargin);
   const std::vector<std::string>& names = arguments.operands();
@@ -76,25 +78,6 @@ int analyze_files(const Arguments& arguments) {
     if (const auto output = arguments.text("output")) write_analysis_file(study, *output);
   }
   return kDone;
-}
-
-}  // namespace
-
-Command analyze_command() {
-  return {{.name = "analyze",
-           .summary = "Print how accurate and how consistent each filter is",
-           .operands = {{"FILE.h5", 1, SIZE_MAX}},
-           .options = {{"output", "o", {"OUT.h5"}, "write every metric over time as HDF5"},
-                       {"csv", "", {"DIR"}, "write tables and series as CSV"},
-                       {"all", "", {}, "print all tables"},
-                       {"table", "", {"NAME"}, "print one table and how to read it"},
-                       {"level", "", {"L"}, kLevelMeaning},
-                       {"within", "", {"R"}, kWithinMeaning},
-                       {"force", "", {}, "replace OUT.h5 and the tables in DIR"},
-                       {"threads", "", {"N"}, kThreadsMeaning},
-                       {"backend", "", {"tbb|openmp|serial"}, kBackendMeaning}},
-           .details = "example:\n  montecarta analyze first_study.h5 --table accuracy\n"},
-          analyze_files};
 }
 
 }  // namespace montecarta::experiments

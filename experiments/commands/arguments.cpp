@@ -12,8 +12,109 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
+#include <sstream>
 
 namespace montecarta::experiments {
+namespace {
+
+/// "-o, --output OUT.h5  result file"
+OptionSpec option_in(const std::string& line) {
+  const std::size_t gap = std::min(line.find("  "), line.size());
+  OptionSpec option;
+  option.meaning = trimmed(line.substr(gap));
+  for (const std::string& word : split(line.substr(0, gap), ' ')) {
+    if (word.starts_with("--")) {
+      option.name = word.substr(2);
+    } else if (word.starts_with('-')) {
+      option.letter = word.substr(1, 1);
+    } else if (word == "...") {
+      option.repeatable = true;
+    } else {
+      option.values.push_back(word);
+      option.is_list = word.ends_with("...");
+    }
+  }
+  return option;
+}
+
+/// "FILE.h5", "FILE.h5..." or "[NAME]"
+OperandSpec operand_in(std::string word) {
+  OperandSpec operand;
+  if (word.starts_with('[')) {
+    operand.least = 0;
+    word = word.substr(1, word.size() - 2);
+  }
+  if (word.ends_with("...")) {
+    operand.most = SIZE_MAX;
+    word.resize(word.size() - 3);
+  }
+  operand.name = word;
+  return operand;
+}
+
+/// "replay FILE.h5 -o ONE.h5"; its options are read later.
+CommandSpec command_in(const std::string& usage) {
+  const std::vector<std::string> words = split(usage, ' ');
+  CommandSpec command;
+  command.name = words.front();
+  command.usage = usage;
+  for (std::size_t i = 1; i < words.size() && !words[i].starts_with('-'); ++i)
+    command.operands.push_back(operand_in(words[i]));
+  return command;
+}
+
+/// Whether the usage of a command has an option, which must then be given.
+bool is_in_usage(const OptionSpec& option, const CommandSpec& command) {
+  const std::vector<std::string> words = split(command.usage, ' ');
+  return std::ranges::find(words, "--" + option.name) != words.end() ||
+         (!option.letter.empty() && std::ranges::find(words, "-" + option.letter) != words.end());
+}
+
+/// Adds a line of the file to the details: as a line of its own, or to the paragraph before.
+void add_detail(const std::string& line, std::string& details) {
+  const bool is_item = line.starts_with("  ") && !line.starts_with("    ");
+  const bool begins = details.empty() || details.ends_with('\n');
+  if (line.empty() && !details.empty()) {
+    details += "\n\n";
+  } else if (is_item) {
+    details += (begins ? "" : "\n") + line;
+  } else if (!line.empty()) {
+    details.append(begins ? "" : " ").append(trimmed(line));
+  }
+}
+
+}  // namespace
+
+std::vector<CommandSpec> read_commands(const std::string& text) {
+  std::vector<CommandSpec> commands;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("## ")) {
+      commands.push_back(command_in(line.substr(3)));
+    } else if (commands.empty()) {
+      continue;
+    } else if (commands.back().summary.empty()) {
+      commands.back().summary = line;
+    } else if (line.starts_with("-") && commands.back().details.empty()) {
+      commands.back().options.push_back(option_in(line));
+    } else {
+      add_detail(line, commands.back().details);
+    }
+  }
+  const std::vector<OptionSpec> shared = commands.front().options;
+  commands.erase(commands.begin());
+  for (CommandSpec& command : commands) {
+    while (command.details.ends_with('\n')) command.details.pop_back();
+    for (OptionSpec& option : command.options) {
+      if (option.meaning.empty())
+        option = item_called(option.name, shared, &OptionSpec::name, "commands.md");
+      option.is_required = is_in_usage(option, command);
+    }
+  }
+  return commands;
+}
+
 namespace {
 
 namespace po = boost::program_options;
@@ -61,15 +162,28 @@ po::parsed_options parsed(const CommandSpec& spec, const Texts& words,
   }
 }
 
-void check_count(const OptionSpec& option, std::size_t given, std::size_t times) {
+/// "-o OUT.h5"
+std::string spelling_of(const OptionSpec& option) {
+  return (option.letter.empty() ? "--" + option.name : "-" + option.letter) + " " +
+         joined(option.values, " ");
+}
+
+/// Checks the values of an option that was given `times` times.
+void check_values(const OptionSpec& option, const Texts& values, std::size_t times) {
   if (times > 1 && !option.repeatable) {
     throw StudyError("--" + option.name + ": given " + std::to_string(times) +
                      " times (once is meant): remove all but one");
   }
-  if (option.is_list ? given > 0 : given == option.values.size() * times) return;
-  throw StudyError("--" + option.name + ": " + std::to_string(given) + " values (it takes " +
-                   std::to_string(option.values.size()) + "): write --" + option.name + " " +
-                   joined(option.values, " "));
+  if (option.is_list ? values.empty() : values.size() != option.values.size() * times) {
+    throw StudyError("--" + option.name + ": " + std::to_string(values.size()) +
+                     " values (it takes " + std::to_string(option.values.size()) + "): write --" +
+                     option.name + " " + joined(option.values, " "));
+  }
+  if (option.values.empty() || option.values.front().find('|') == std::string::npos) return;
+  const Texts known = split(option.values.front(), '|');
+  item_called(
+      values.front(), known, std::identity(),
+      "--" + option.name + " " + values.front() + ": not known (one of " + joined(known) + ")");
 }
 
 }  // namespace
@@ -87,10 +201,15 @@ Arguments::Arguments(const CommandSpec& spec, std::vector<std::string> words)
     values.insert(values.end(), option.value.begin(), option.value.end());
     ++times[option.string_key];
   }
-  for (const OptionSpec& option : spec.options) {
-    if (has(option.name)) check_count(option, values_[option.name].size(), times[option.name]);
-  }
   check_operands(spec);
+  for (const OptionSpec& option : spec.options) {
+    if (has(option.name)) check_values(option, texts(option.name), times[option.name]);
+  }
+  for (const OptionSpec& option : spec.options) {
+    if (has(option.name) || !option.is_required) continue;
+    throw StudyError(spec.name + ": " + spelling_of(option) + " is missing (" + option.meaning +
+                     "): write montecarta " + spec.usage);
+  }
 }
 
 void Arguments::check_operands(const CommandSpec& spec) const {
@@ -143,14 +262,6 @@ std::optional<std::uint64_t> Arguments::count(const std::string& option, std::ui
                    " is needed): correct it");
 }
 
-std::string Arguments::choice(const std::string& option,
-                              const std::vector<std::string>& known) const {
-  std::string given = text(option).value_or(known.front());
-  if (std::ranges::find(known, given) != known.end()) return given;
-  throw StudyError("--" + option + " " + given + ": not known (one of " + joined(known) +
-                   "): " + nearest_spelling(given, known));
-}
-
 namespace {
 
 std::optional<RunRange> range_of(const Arguments& arguments, std::uint64_t runs) {
@@ -170,20 +281,11 @@ std::optional<std::filesystem::path> shipped_study(const std::string& name) {
   return shipped_file("studies", name + ".ini");
 }
 
+std::string backend_of(const Arguments& arguments) {
+  return arguments.text("backend").value_or("tbb");
+}
+
 }  // namespace
-
-std::vector<OptionSpec> plan_options() {
-  return {{"set", "", {"SECTION.KEY=VALUE"}, "override a setting; may be repeated", true},
-          {"runs", "", {"A:B"}, "only runs A to B - 1"},
-          {"shard", "", {"I/N"}, "only part I of N, counted from 0"},
-          external_option(),
-          {"threads", "", {"N"}, kThreadsMeaning},
-          {"backend", "", {"tbb|openmp|serial"}, kBackendMeaning}};
-}
-
-OptionSpec external_option() {
-  return {kAllowExternal, "", {}, "start the programs that the study names"};
-}
 
 ExternalPrograms programs_of(const Study& study, const Arguments& arguments) {
   if (arguments.has(kAllowExternal)) return ExternalPrograms::allowed;
@@ -209,7 +311,7 @@ StudyPlan plan_of(const Study& study, const Arguments& arguments) {
 }
 
 Parallel parallel_of(const Arguments& arguments) {
-  const std::string backend = arguments.choice("backend", {"tbb", "openmp", "serial"});
+  const std::string backend = backend_of(arguments);
   const int threads = thread_budget(arguments.text("threads")).threads;
   if (backend == "serial") return Parallel::serial();
   return Parallel(backend == "openmp" ? Backend::openmp : Backend::tbb, threads);
@@ -220,7 +322,7 @@ TextPairs provenance_of(const std::string& command, const Arguments& arguments) 
   for (const std::string& word : arguments.words()) line += " " + shell_quoted(word);
   TextPairs provenance = collect_provenance();
   provenance.emplace_back("command_line", line);
-  provenance.emplace_back("backend", arguments.choice("backend", {"tbb", "openmp", "serial"}));
+  provenance.emplace_back("backend", backend_of(arguments));
   provenance.emplace_back("threads", std::to_string(parallel_of(arguments).threads()));
   return provenance;
 }

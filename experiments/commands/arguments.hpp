@@ -22,6 +22,7 @@ struct OptionSpec {
   std::string letter;               ///< one letter, or "" if there is none
   std::vector<std::string> values;  ///< names of the values that follow it; empty: a flag
   std::string meaning;
+  bool is_required = false;
   bool repeatable = false;
   bool is_list = false;  ///< takes one or more values, up to the next option
 };
@@ -36,16 +37,21 @@ struct OperandSpec {
 /// How a command is called. Both the parser and the help text are made from it.
 struct CommandSpec {
   std::string name;
+  std::string usage;                  ///< with operands and required options
   std::string summary;                ///< one line
   std::vector<OperandSpec> operands;  ///< only the last one may repeat
   std::vector<OptionSpec> options;
   std::string details;  ///< text at the end of --help, e.g. examples
 };
 
+/// Reads how commands are called from a text in the form of commands.md.
+std::vector<CommandSpec> read_commands(const std::string& text);
+
 /// The words that follow a command's name, checked against its CommandSpec.
 class Arguments {
  public:
-  /// Throws StudyError if a word is unknown, and suggests the nearest known spelling.
+  /// Throws StudyError if a word is unknown, and suggests the nearest known spelling. An option
+  /// whose value is called `a|b|c` takes one of these.
   Arguments(const CommandSpec& spec, std::vector<std::string> words);
 
   bool has(const std::string& option) const { return values_.contains(option); }
@@ -58,8 +64,6 @@ class Arguments {
   std::optional<double> number(const std::string& option, double least, double most) const;
   std::optional<std::uint64_t> count(const std::string& option, std::uint64_t least,
                                      std::uint64_t most) const;
-  /// The value of an option, which must be one of `known`; the first of them if it was not given.
-  std::string choice(const std::string& option, const std::vector<std::string>& known) const;
   /// Positional arguments, and all words, in the order in which they were typed.
   const std::vector<std::string>& operands() const { return operands_; }
   const std::vector<std::string>& words() const { return words_; }
@@ -78,17 +82,6 @@ std::string help_text(const CommandSpec& spec);
 /// `word`, quoted so that a POSIX shell reads it back as one word.
 std::string shell_quoted(const std::string& word);
 
-/// Descriptions of options that several commands share.
-inline constexpr const char* kWithinMeaning = "margin of the verdict; default: the study's";
-inline constexpr const char* kLevelMeaning = "probability of the intervals; default 0.95";
-inline constexpr const char* kThreadsMeaning = "number of threads; default: all available";
-inline constexpr const char* kBackendMeaning = "thread library; results are the same";
-
-/// Options that select the part of a study to run and how to run it: --set, --runs, --shard,
-/// --allow-external, --threads, --backend.
-std::vector<OptionSpec> plan_options();
-/// The option --allow-external. Without it no command starts a program that a study names.
-OptionSpec external_option();
 /// Whether --allow-external was given. Throws StudyError if it was not and a cell of the study is
 /// an external program.
 ExternalPrograms programs_of(const Study& study, const Arguments& arguments);

@@ -45,7 +45,9 @@ void expect_one_question(const Arguments& arguments) {
   }
 }
 
-int bounds(const Arguments& arguments) {
+}  // namespace
+
+int bounds_command(const Arguments& arguments) {
   expect_one_question(arguments);
   const auto runs = arguments.count("runs", 1, 1'000'000'000);
   const auto dimension = arguments.count("dim", 1, 1000);
@@ -61,24 +63,6 @@ int bounds(const Arguments& arguments) {
   }
   if (arguments.has("match")) print_matches(arguments.texts("match"));
   return kDone;
-}
-
-}  // namespace
-
-Command bounds_command() {
-  return {{.name = "bounds",
-           .summary = "Print the interval of the average NEES of a consistent filter",
-           .operands = {},
-           .options = {{"runs", "", {"N"}, "number of runs that are averaged"},
-                       {"dim", "", {"D"}, "dimension of the error: 3 for a pose, 2 for a position"},
-                       {"level", "", {"L"}, "probability of the interval; default 0.95"},
-                       {"match",
-                        "",
-                        {"LO", "HI"},
-                        "find the runs, dimension and level of a printed interval"}},
-           .details = "The interval is exact and two-sided.\n\nexamples:\n  montecarta bounds "
-                      "--runs 30 --dim 3\n  montecarta bounds --match 1.3 2.79\n"},
-          bounds};
 }
 
 }  // namespace montecarta::experiments

@@ -272,7 +272,9 @@ void print_cells(const StudyPlan& plan, const std::vector<TableRow>& rows) {
             << listing(items, 2, output_width() - std::min(line.size() + 4, output_width() / 2));
 }
 
-int check(const Arguments& arguments) {
+}  // namespace
+
+int check_command(const Arguments& arguments) {
   const Study study = study_of(arguments);
   const StudyPlan plan = plan_of(study, arguments);
   if (arguments.has("text")) {
@@ -284,21 +286,6 @@ int check(const Arguments& arguments) {
   print_details(study, plan);
   print_cells(plan, costs.rows);
   return kDone;
-}
-
-}  // namespace
-
-Command check_command() {
-  CommandSpec spec{
-      .name = "check",
-      .summary = "Check a study and estimate its cost, without running it",
-      .operands = {{"STUDY.ini"}},
-      .options = plan_options(),
-      .details =
-          "Errors are reported with line, reason and remedy. Times are extrapolated from a short "
-          "trial of every filter.\n\nexample:\n  montecarta check first_study\n"};
-  spec.options.push_back({"text", "", {}, "print only the study, with all settings filled in"});
-  return {spec, check};
 }
 
 }  // namespace montecarta::experiments

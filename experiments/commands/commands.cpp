@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <iostream>
+#include <map>
 #include <new>
 #include <unistd.h>
 
@@ -32,16 +33,6 @@ std::string general_help(const std::vector<Command>& commands) {
              output_width());
 }
 
-const Command& find_command(const std::vector<Command>& commands, const std::string& name) {
-  const auto found =
-      std::ranges::find_if(commands, [&](const Command& c) { return c.spec.name == name; });
-  if (found != commands.end()) return *found;
-  std::vector<std::string> known;
-  for (const Command& command : commands) known.push_back(command.spec.name);
-  throw StudyError(name +
-                   ": unknown command (see montecarta --help): " + nearest_spelling(name, known));
-}
-
 bool asks_for_help(const std::vector<std::string>& words) {
   return std::ranges::any_of(
       words, [](const std::string& word) { return word == "--help" || word == "-h"; });
@@ -62,7 +53,10 @@ int dispatch(const std::vector<std::string>& words) {
     return kDone;
   }
   const bool help_first = words[0] == "help";
-  const Command& command = find_command(commands, words[help_first ? 1 : 0]);
+  const std::string& name = words[help_first ? 1 : 0];
+  const Command& command = item_called(
+      name, commands, [](const Command& known) { return known.spec.name; },
+      name + ": unknown command (see montecarta --help)");
   if (help_first || asks_for_help(words)) {
     std::cout << help_text(command.spec);
     return kDone;
@@ -81,10 +75,19 @@ int print_error(const std::string& message, int code) {
 }  // namespace
 
 std::vector<Command> all_commands() {
-  return {run_command(),   check_command(),   info_command(),   status_command(),
-          merge_command(), analyze_command(), report_command(), compare_command(),
-          gate_command(),  verify_command(),  replay_command(), bounds_command(),
-          plan_command(),  export_command(),  judge_command(),  list_command()};
+  const std::map<std::string, CommandFunction*> functions = {
+      {"run", run_command},       {"check", check_command},     {"info", info_command},
+      {"status", status_command}, {"merge", merge_command},     {"analyze", analyze_command},
+      {"report", report_command}, {"compare", compare_command}, {"gate", gate_command},
+      {"verify", verify_command}, {"replay", replay_command},   {"bounds", bounds_command},
+      {"plan", plan_command},     {"export", export_command},   {"judge", judge_command},
+      {"list", list_command}};
+  std::vector<Command> commands;
+  for (CommandSpec& spec : read_commands(commands_text())) {
+    CommandFunction* const function = functions.at(spec.name);
+    commands.push_back({std::move(spec), function});
+  }
+  return commands;
 }
 
 int run_program(const std::vector<std::string>& words) {
@@ -109,11 +112,6 @@ int run_program(const std::vector<std::string>& words) {
 }
 
 std::string help_text(const CommandSpec& spec) {
-  std::string usage = "usage: montecarta " + spec.name;
-  for (const OperandSpec& operand : spec.operands) {
-    const std::string name = operand.name + (operand.most > 1 ? "..." : "");
-    usage += operand.least > 0 ? " " + name : " [" + name + "]";
-  }
   TextPairs options;
   for (const OptionSpec& option : spec.options) {
     const std::string letter = option.letter.empty() ? "    " : "-" + option.letter + ", ";
@@ -121,11 +119,10 @@ std::string help_text(const CommandSpec& spec) {
     options.emplace_back(letter + "--" + option.name + values, option.meaning);
   }
   options.emplace_back("    --help", "print this text");
-  return wrapped(usage + (spec.options.empty() ? "" : " [options]") + "\n\n" + spec.summary +
-                     "\n\noptions:\n",
+  return wrapped("usage: montecarta " + spec.usage + (spec.options.empty() ? "" : " [options]") +
+                     "\n\n" + spec.summary + "\n\noptions:\n",
                  output_width()) +
-         listing(options) +
-         wrapped(spec.details.empty() ? "" : "\n" + spec.details, output_width());
+         listing(options) + wrapped("\n" + spec.details, output_width());
 }
 
 std::string shell_quoted(const std::string& word) {

@@ -3,7 +3,6 @@
 
 #include "experiments/commands/arguments.hpp"
 
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -14,28 +13,20 @@ inline constexpr int kDone = 0, kFailed = 1, kWrongInput = 2, kDifferent = 4;
 /// Exit codes of `gate`: the filter is not consistent, or there are too few runs to decide.
 inline constexpr int kInconsistent = 4, kUndecided = 5;
 
-/// One command of the program. `run` returns the exit code.
+/// Runs a command, and returns the exit code.
+using CommandFunction = int(const Arguments&);
+CommandFunction run_command, check_command, info_command, status_command, merge_command,
+    analyze_command, report_command, compare_command, gate_command, verify_command, replay_command,
+    bounds_command, plan_command, export_command, judge_command, list_command;
+
+/// One command of the program.
 struct Command {
   CommandSpec spec;
-  std::function<int(const Arguments&)> run;
+  CommandFunction* run;
 };
 
-Command run_command();
-Command check_command();
-Command info_command();
-Command status_command();
-Command merge_command();
-Command analyze_command();
-Command report_command();
-Command verify_command();
-Command replay_command();
-Command compare_command();
-Command gate_command();
-Command bounds_command();
-Command plan_command();
-Command export_command();
-Command judge_command();
-Command list_command();
+/// The contents of commands.md, which is built into the program.
+std::string commands_text();
 
 /// All commands, in the order of the help.
 std::vector<Command> all_commands();

@@ -17,19 +17,15 @@
 namespace montecarta::experiments {
 namespace {
 
-const Score* score_called(const std::string& name) {
-  if (const Score* score = find_score(name)) return score;
-  std::vector<std::string> known;
-  for (const Score& score : all_scores()) known.emplace_back(score.name);
-  throw StudyError("--metric " + name + ": no metric (runs have no number of that name): " +
-                   nearest_spelling(name, known));
-}
-
 std::vector<const Score*> scores_of(const Arguments& arguments, const ResultFile& file) {
   const auto names = arguments.text("metric");
   if (!names) return usual_scores(file.has_errors());
   std::vector<const Score*> scores;
-  for (const std::string& name : split(*names, ',')) scores.push_back(score_called(name));
+  for (const std::string& name : split(*names, ',')) {
+    scores.push_back(
+        &item_called(name, all_scores(), &Score::name,
+                     "--metric " + name + ": no metric (runs have no number of that name)"));
+  }
   return scores;
 }
 
@@ -48,9 +44,9 @@ std::string baseline_of(const Arguments& arguments, const ResultFile& file) {
         "compare: --baseline CELL is needed (the others are compared with it): one of " +
         joined(labels));
   }
-  if (std::ranges::find(labels, *baseline) != labels.end()) return *baseline;
-  throw StudyError("--baseline " + *baseline + ": no cell of " + file.path().string() +
-                   " (it must be one of them): " + nearest_spelling(*baseline, labels));
+  return item_called(*baseline, labels, std::identity(),
+                     "--baseline " + *baseline + ": no cell of " + file.path().string() +
+                         " (it must be one of them)");
 }
 
 void print(const StudyAnalysis& study, const StudyComparison& comparison) {
@@ -71,7 +67,9 @@ void print(const StudyAnalysis& study, const StudyComparison& comparison) {
   if (!comparison.matrices.empty()) out << engine::wrapped(win_note(level), width);
 }
 
-int compare(const Arguments& arguments) {
+}  // namespace
+
+int compare_command(const Arguments& arguments) {
   const double level = arguments.number("level", 1e-9, 1.0 - 1e-9).value_or(0.95);
   const ResultFile file = open_stored(arguments.operands().front());
   const std::string baseline = baseline_of(arguments, file);
@@ -84,26 +82,6 @@ int compare(const Arguments& arguments) {
   print(study, comparison);
   if (directory) write_comparison_csv(comparison, *directory);
   return kDone;
-}
-
-}  // namespace
-
-Command compare_command() {
-  return {{.name = "compare",
-           .summary = "Compare every cell with a baseline, run by run in the same worlds",
-           .operands = {{"FILE.h5"}},
-           .options = {{"baseline", "", {"CELL"}, "the cell that the others are compared with"},
-                       {"metric", "", {"NAME,..."}, "metrics to compare (montecarta list metrics)"},
-                       {"level", "", {"L"}, kLevelMeaning},
-                       {"within", "", {"R"}, kWithinMeaning},
-                       {"csv", "", {"DIR"}, "also write comparison.csv and wins.csv"},
-                       {"force", "", {}, "replace the tables in DIR"},
-                       {"threads", "", {"N"}, kThreadsMeaning},
-                       {"backend", "", {"tbb|openmp|serial"}, kBackendMeaning}},
-           .details = "Without --metric these are compared: position_rmse, heading_rmse, nees and "
-                      "cpu_seconds.\n\nexample:\n  montecarta compare first_study.h5 --baseline "
-                      "ekf_slam --metric nees\n"},
-          compare};
 }
 
 }  // namespace montecarta::experiments

@@ -16,11 +16,10 @@ namespace {
 namespace fs = std::filesystem;
 
 fs::path output_of(const Arguments& arguments) {
-  const auto directory = arguments.text("output");
-  if (!directory) throw StudyError("export: no folder (-o DIR is where the drives go): add -o DIR");
-  if (!fs::exists(*directory) || (fs::is_directory(*directory) && fs::is_empty(*directory)))
-    return *directory;
-  throw StudyError(*directory +
+  fs::path directory = arguments.text("output").value();
+  if (!fs::exists(directory) || (fs::is_directory(directory) && fs::is_empty(directory)))
+    return directory;
+  throw StudyError(directory.string() +
                    ": not a new folder (other files would be taken for drives of this study): "
                    "name another");
 }
@@ -45,7 +44,9 @@ std::string belief_text(const Study& study) {
   return text;
 }
 
-int export_drives(const Arguments& arguments) {
+}  // namespace
+
+int export_command(const Arguments& arguments) {
   const Study study = study_of(arguments);
   if (study.log != nullptr) {
     throw StudyError(arguments.operands().front() +
@@ -73,27 +74,6 @@ int export_drives(const Arguments& arguments) {
             << (folder / "runs").string() << ", their truth in " << (folder / "truth").string()
             << "\n";
   return kDone;
-}
-
-}  // namespace
-
-Command export_command() {
-  return {
-      {.name = "export",
-       .summary = "Write the simulated drives of a study as CSV, for any estimator",
-       .operands = {{"STUDY.ini"}},
-       .options = {{"output", "o", {"DIR"}, "folder to write to, new or empty"},
-                   {"set", "", {"SECTION.KEY=VALUE"}, "override a setting; may be repeated", true},
-                   {"runs", "", {"A:B"}, "only runs A to B - 1"},
-                   {"shard", "", {"I/N"}, "only part I of N, counted from 0"}},
-       .details =
-           "DIR/runs/run_0000 and so on hold what an estimator is given: start.csv, odometry.csv "
-           "and detections.csv, described in experiments/RECORDED_DRIVES.md. DIR/belief.ini has "
-           "the vehicle and the noise that it may assume. The true path (reference.csv), the true "
-           "landmarks and the study are in DIR/truth.\nA drive depends on the study and the number "
-           "of the run alone, so the filters of montecarta run are given the same "
-           "drives.\n\nexample:\n  montecarta export first_study -o drives --runs 0:10\n"},
-      export_drives};
 }
 
 }  // namespace montecarta::experiments

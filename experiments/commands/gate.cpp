@@ -19,18 +19,12 @@ namespace {
 constexpr double kGateLevel = 0.95;
 
 const StoredCell& cell_to_judge(const Arguments& arguments, const ResultFile& file) {
-  std::vector<std::string> labels;
-  for (const StoredCell& cell : file.cells()) labels.push_back(cell.label);
   const auto label = arguments.text("cell");
   if (!label && file.cells().size() == 1) return file.cells().front();
-  if (!label) {
-    throw StudyError("gate: --cell CELL is needed (one filter is judged): one of " +
-                     joined(labels));
-  }
-  const auto found = std::ranges::find(file.cells(), *label, &StoredCell::label);
-  if (found != file.cells().end()) return *found;
-  throw StudyError("--cell " + *label + ": no cell of " + file.path().string() +
-                   " (it must be one of them): " + nearest_spelling(*label, labels));
+  return item_called(label.value_or(""), file.cells(), &StoredCell::label,
+                     (label ? "--cell " + *label + ": no cell of " + file.path().string()
+                            : "gate: --cell CELL is needed") +
+                         " (one of its filters is judged)");
 }
 
 /// Throws StudyError if runs are missing: those that ended first are not a fair sample.
@@ -110,7 +104,9 @@ Json json_of(const std::string& label, const Verdict& verdict, const Allowance& 
           {"families", std::move(families)}};
 }
 
-int gate_file(const Arguments& arguments) {
+}  // namespace
+
+int gate_command(const Arguments& arguments) {
   const auto within = arguments.number("within", kLeastMargin, kMostMargin);
   const Allowance allowed = {.failed = arguments.count("failed", 0, UINT64_MAX).value_or(0),
                              .unusable = arguments.count("invalid", 0, UINT64_MAX).value_or(0)};
@@ -137,30 +133,6 @@ int gate_file(const Arguments& arguments) {
   } catch (const StudyError& error) {
     throw StudyError(place + ": cell " + stored.label + ": " + error.what());
   }
-}
-
-}  // namespace
-
-Command gate_command() {
-  return {
-      {.name = "gate",
-       .summary = "Report by the exit code whether a filter is consistent",
-       .operands = {{"FILE.h5"}},
-       .options = {{"cell", "", {"CELL"}, "the cell to judge, if there are several"},
-                   {"within", "", {"R"}, kWithinMeaning},
-                   {"failed", "", {"N"}, "failed runs to accept; default 0"},
-                   {"invalid", "", {"N"}, "unusable samples to accept; default 0"},
-                   {"json", "", {}, "print the tests behind the verdict as JSON"},
-                   {"threads", "", {"N"}, kThreadsMeaning},
-                   {"backend", "", {"tbb|openmp|serial"}, kBackendMeaning}},
-       .details = "The reason is printed. The verdict is that of montecarta analyze at 95 %. Exit "
-                  "codes:\n  0 shown to be consistent within the margin R\n  4 not consistent: "
-                  "optimistic, conservative or inconsistent, or more failed runs or unusable "
-                  "samples than accepted\n  5 too few runs to decide\n  2 wrong input, or nothing "
-                  "to judge\n  1 failed\nA sample is unusable if its error or covariance is not "
-                  "finite, or if the covariance is not positive semidefinite.\n\nexample:\n  "
-                  "montecarta gate first_study.h5 --cell ekf_slam --within 1.2\n"},
-      gate_file};
 }
 
 }  // namespace montecarta::experiments

@@ -116,7 +116,9 @@ void print_pairs(const char* heading, const TextPairs& pairs) {
   std::cout << "\n" << heading << "\n" << listing(pairs, 2, output_width() / 2);
 }
 
-int info(const Arguments& arguments) {
+}  // namespace
+
+int info_command(const Arguments& arguments) {
   const ResultFile file = open_stored(arguments.operands().front());
   if (arguments.has("text")) {
     std::cout << file.study_text();
@@ -129,17 +131,6 @@ int info(const Arguments& arguments) {
   print_pairs("provenance", file.provenance());
   print_datasets(file);
   return kDone;
-}
-
-}  // namespace
-
-Command info_command() {
-  return {{.name = "info",
-           .summary = "Print the contents of a file: study, cells, runs, provenance, sizes",
-           .operands = {{"FILE.h5"}},
-           .options = {{"text", "", {}, "print only the study that made the file"}},
-           .details = "example:\n  montecarta info first_study.h5\n"},
-          info};
 }
 
 }  // namespace montecarta::experiments

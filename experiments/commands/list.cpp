@@ -13,25 +13,23 @@
 #include "experiments/worlds/world.hpp"
 
 #include <algorithm>
-#include <fstream>
 #include <iostream>
-#include <sstream>
+#include <map>
 
 namespace montecarta::experiments {
 namespace {
 
-[[noreturn]] void throw_unknown(const std::string& what, const std::string& name,
-                                const std::vector<std::string>& known) {
-  const std::string nearest = nearest_spelling(name, known);
-  throw StudyError(name + ": not in the list of " + what + " (see montecarta list " + what +
-                   "): " + (nearest.starts_with("known") ? "choose one of them" : nearest));
-}
-
-void point_to_details(const std::string& what, const std::string& example) {
-  std::cout << "\n"
-            << wrapped("More about one of them: montecarta list " + what + " " + example,
-                       output_width());
-}
+/// One entry of a list, with all that is printed if a user names it.
+struct Entry {
+  std::string name;
+  std::string summary;    ///< stands beside the name in the list
+  TextPairs facts = {};   ///< lines below the summary of one entry
+  std::string more = {};  ///< text above the facts
+  /// Tables below the facts, with their headings.
+  std::vector<std::pair<std::string, TextPairs>> tables = {};
+  std::string heading = {};     ///< stands in the list above entries of the same heading
+  std::string short_name = {};  ///< in the list; empty: the name
+};
 
 /// The default, and the one for measured controls if it differs.
 std::string fallback_text(const Parameter& option) {
@@ -50,28 +48,17 @@ TextPairs options_text(std::span<const Parameter> options) {
   return items;
 }
 
-void list_filters() {
-  TextPairs items;
-  for (const FilterKind& filter : known_filters())
-    items.emplace_back(filter.name, filter.long_name);
-  std::cout << listing(items, 0);
-  point_to_details("filters", "fastslam2");
+std::vector<Entry> filters() {
+  std::vector<Entry> entries;
+  for (const FilterKind& filter : known_filters()) {
+    Entry& entry = entries.emplace_back(Entry{filter.name, filter.long_name});
+    entry.facts = {{"source", filter.source},
+                   {"sensors", joined(filter.sensors.empty() ? sensor_names() : filter.sensors)}};
+    if (!filter.options.empty()) entry.tables.emplace_back("options", options_text(filter.options));
+    entry.tables.emplace_back("options of every filter", options_text(mismatch_options()));
+  }
+  return entries;
 }
-
-void describe_filter(const std::string& name) {
-  std::vector<std::string> known;
-  for (const FilterKind& filter : known_filters()) known.push_back(filter.name);
-  const auto found = std::ranges::find(known_filters(), name, &FilterKind::name);
-  if (found == known_filters().end()) throw_unknown("filters", name, known);
-  std::cout << found->name << ": " << found->long_name << "\n\n"
-            << listing(
-                   {{"source", found->source},
-                    {"sensors", joined(found->sensors.empty() ? sensor_names() : found->sensors)}});
-  if (!found->options.empty()) std::cout << "\noptions\n" << listing(options_text(found->options));
-  std::cout << "\noptions of every filter\n" << listing(options_text(mismatch_options()));
-}
-
-std::string name_of(const Setting& setting) { return setting.section + "." + setting.key; }
 
 /// The default, and the defaults for kinds of scenario that have another one.
 std::string fallback_text(const Setting& setting) {
@@ -89,11 +76,7 @@ std::string fallback_text(const Setting& setting) {
   return text;
 }
 
-void describe(const Setting& setting) {
-  const std::string first = engine::first_sentence(setting.meaning);
-  std::cout << wrapped(name_of(setting) + ": " + first, output_width());
-  if (first.size() < setting.meaning.size())
-    std::cout << wrapped(setting.meaning.substr(first.size() + 2), output_width());
+TextPairs facts_of(const Setting& setting) {
   TextPairs facts = {{"value", demand_of(setting)}, {"default", fallback_text(setting)}};
   if (!setting.unit.empty() && setting.unit != "1") facts.emplace_back("unit", setting.unit);
   if (!setting.kinds.empty())
@@ -101,127 +84,72 @@ void describe(const Setting& setting) {
   if (!setting.applies_to.empty())
     facts.emplace_back("only if", setting.section + "." + setting.chooser + " = " +
                                       joined(setting.applies_to, " or "));
-  std::cout << "\n" << listing(facts);
+  return facts;
 }
 
-/// Describes the setting with this full name, or all settings with this key, since several sections
-/// may have the same key.
-void describe_setting(const std::string& name) {
-  std::vector<std::string> known;
-  bool is_first = true;
+const std::map<std::string, std::string> kSectionTitles = {
+    {"study", "how many runs"},
+    {"scenario", "the true world, vehicle and sensor"},
+    {"belief", "assumptions of the filters; in a simulation by default the truth"},
+    {"association", "association of detections with landmarks"},
+    {"record", "columns to store"}};
+
+std::vector<Entry> settings() {
+  std::vector<Entry> entries;
   for (const Setting& setting : study_settings()) {
-    known.insert(known.end(), {name_of(setting), setting.key});
-    if (name != name_of(setting) && name != setting.key) continue;
-    std::cout << (is_first ? "" : "\n");
-    describe(setting);
-    is_first = false;
+    const std::string first = engine::first_sentence(setting.meaning);
+    const std::size_t rest = std::min(first.size() + 2, setting.meaning.size());
+    entries.push_back({.name = setting.section + "." + setting.key,
+                       .summary = first,
+                       .facts = facts_of(setting),
+                       .more = setting.meaning.substr(rest),
+                       .heading = "[" + setting.section + "] " + kSectionTitles.at(setting.section),
+                       .short_name = setting.key});
   }
-  if (is_first) throw_unknown("settings", name, known);
+  return entries;
 }
 
-/// Title of a section in the list of settings.
-std::string title_of_section(const std::string& section) {
-  if (section == "study") return "how many runs";
-  if (section == "scenario") return "the true world, vehicle and sensor";
-  if (section == "belief")
-    return "assumptions of the filters; in a simulation by default the truth";
-  if (section == "association") return "association of detections with landmarks";
-  return "columns to store";
+/// Entries for the shipped files in a folder. entry_of(name, path) makes one.
+template <class EntryOf>
+std::vector<Entry> shipped_entries(const std::string& folder, const std::string& ending,
+                                   const EntryOf& entry_of) {
+  std::vector<Entry> entries;
+  for (const std::string& name : shipped_names(folder, ending))
+    entries.push_back(entry_of(name, shipped_file(folder, name + ending).value().string()));
+  return entries;
 }
 
-void list_section(const std::string& section) {
-  TextPairs items;
-  for (const Setting& setting : study_settings()) {
-    if (setting.section == section)
-      items.emplace_back(setting.key, engine::first_sentence(setting.meaning));
-  }
-  if (items.empty()) return;
-  std::cout << wrapped("[" + section + "] " + title_of_section(section), output_width())
-            << listing(items);
-}
-
-void list_settings() {
-  for (const std::string& section : study_sections()) list_section(section);
-  point_to_details("settings", "scenario.noise");
-}
-
-std::string size_of_world(const std::string& name) {
+Entry entry_of_world(const std::string& name, const std::string& path) {
   const World world = find_world(name);
-  return std::to_string(world.landmarks.size()) + " landmarks, " +
-         std::to_string(world.waypoints.size()) + " way-points";
+  return {name,
+          std::to_string(world.landmarks.size()) + " landmarks, " +
+              std::to_string(world.waypoints.size()) + " way-points",
+          {{"file", path}, {"in a study", "scenario.world = " + name}}};
 }
 
-void list_worlds() {
-  TextPairs items;
-  for (const std::string& name : shipped_worlds()) items.emplace_back(name, size_of_world(name));
-  std::cout << listing(items, 0);
-}
-
-/// Path of the shipped file `name` in the folder `what`, which users may copy. Throws StudyError if
-/// there is no such file.
-std::string shipped_path(const std::string& what, const std::string& name,
-                         const std::string& ending) {
-  const auto path = shipped_file(what, name + ending);
-  if (!path) throw_unknown(what, name, shipped_names(what, ending));
-  return path->string();
-}
-
-void describe_world(const std::string& name) {
-  const std::string path = shipped_path("worlds", name, ".csv");
-  std::cout << name << ": " << size_of_world(name) << "\n\n"
-            << listing({{"file", path}, {"in a study", "scenario.world = " + name}});
-}
-
-std::string title_of(const std::filesystem::path& path) {
-  std::ostringstream text;
-  text << std::ifstream(path).rdbuf();
-  const IniText ini = read_ini(text.str(), path.string());
-  const auto found = std::ranges::find_if(
+Entry entry_of_study(const std::string& name, const std::string& path) {
+  const IniText ini = read_ini(text_file(path), path);
+  const auto title = std::ranges::find_if(
       ini.entries, [](const IniEntry& e) { return e.section == "study" && e.key == "title"; });
-  return found == ini.entries.end() ? "" : found->value;
+  return {name,
+          title == ini.entries.end() ? "" : title->value,
+          {{"file", path},
+           {"filters and cost", "montecarta check " + name},
+           {"run it", "montecarta run " + name}}};
 }
 
-void list_studies() {
-  TextPairs items;
-  for (const std::string& name : shipped_names("studies", ".ini"))
-    items.emplace_back(name, title_of(shipped_file("studies", name + ".ini").value()));
-  std::cout << listing(items, 0);
-  point_to_details("studies", "first_study");
-}
-
-void describe_study(const std::string& name) {
-  const std::string path = shipped_path("studies", name, ".ini");
-  std::cout << wrapped(name + ": " + title_of(path), output_width()) << "\n"
-            << listing({{"file", path},
-                        {"filters and cost", "montecarta check " + name},
-                        {"run it", "montecarta run " + name}});
-}
-
-std::string in_brackets(std::string_view units) {
-  return units == "1" ? "" : " [" + std::string(units) + "]";
-}
-
-void list_metrics() {
-  TextPairs items;
-  for (const Score& score : all_scores())
-    items.emplace_back(score.name, score.words + in_brackets(score.units));
-  std::cout << listing(items, 0);
-  point_to_details("metrics", "position_rmse");
-}
-
-void describe_metric(const std::string& name) {
-  const Score* score = find_score(name);
-  if (score == nullptr) {
-    std::vector<std::string> known;
-    for (const Score& one : all_scores()) known.emplace_back(one.name);
-    throw_unknown("metrics", name, known);
+std::vector<Entry> metrics() {
+  std::vector<Entry> entries;
+  for (const Score& score : all_scores()) {
+    const std::string units(score.units);
+    entries.push_back({score.name,
+                       score.words + (units == "1" ? "" : " [" + units + "]"),
+                       {{"better", score.better == Better::lower    ? "lower"
+                                   : score.better == Better::higher ? "higher"
+                                                                    : "neither lower nor higher"},
+                        {"used by", "montecarta compare --metric, and study.until"}}});
   }
-  std::cout << wrapped(name + ": " + score->words, output_width()) << "\n"
-            << listing({{"unit", score->units == std::string("1") ? "none" : score->units},
-                        {"better", score->better == Better::lower    ? "lower"
-                                   : score->better == Better::higher ? "higher"
-                                                                     : "neither lower nor higher"},
-                        {"used by", "montecarta compare --metric, and study.until"}});
+  return entries;
 }
 
 /// A column of the table, or one that a filter declares itself.
@@ -245,72 +173,91 @@ std::vector<ListedColumn> listed_columns() {
   return columns;
 }
 
-void list_columns() {
-  std::cout << wrapped(
-      "The study chooses groups of columns by record.columns. The group pose is "
-      "always stored.\n\n",
-      output_width());
+std::vector<Entry> columns() {
+  std::vector<Entry> entries;
   for (const ColumnGroup& group : column_groups()) {
-    TextPairs items;
     for (const ListedColumn& column : listed_columns()) {
-      if (column.group == group.name) items.emplace_back(column.name, column.long_name);
+      if (column.group != group.name) continue;
+      entries.push_back({.name = column.name,
+                         .summary = column.long_name,
+                         .facts = {{"stored if", "record.columns has " + column.group},
+                                   {"axes", column.axes},
+                                   {"unit", column.units}},
+                         .heading = column.group});
     }
-    std::cout << group.name << "\n" << listing(items);
   }
-  point_to_details("columns", "pose_covariance");
+  return entries;
 }
 
-void describe_column(const std::string& name) {
-  const std::vector<ListedColumn> columns = listed_columns();
-  const auto found = std::ranges::find(columns, name, &ListedColumn::name);
-  if (found == columns.end()) {
-    std::vector<std::string> known;
-    for (const ListedColumn& column : columns) known.push_back(column.name);
-    throw_unknown("columns", name, known);
-  }
-  std::cout << wrapped(name + ": " + found->long_name, output_width()) << "\n"
-            << listing({{"stored if", "record.columns has " + found->group},
-                        {"axes", found->axes},
-                        {"unit", found->units}});
-}
-
-/// One kind of entries: how all of them are listed, and how one of them is described.
+/// One kind of entries.
 struct Listed {
   std::string name;
-  void (*list)();
-  void (*describe)(const std::string& name);
+  std::vector<Entry> (*entries)();
+  std::string example;      ///< an entry about which there is more to read
+  std::string remark = {};  ///< stands above the list
 };
 
-int list(const Arguments& arguments) {
-  const std::vector<Listed> all = {
-      {"filters", list_filters, describe_filter}, {"settings", list_settings, describe_setting},
-      {"studies", list_studies, describe_study},  {"worlds", list_worlds, describe_world},
-      {"metrics", list_metrics, describe_metric}, {"columns", list_columns, describe_column}};
-  const std::string& what = arguments.operands().front();
-  std::vector<std::string> known;
-  for (const Listed& listed : all) known.push_back(listed.name);
-  const auto found = std::ranges::find(all, what, &Listed::name);
-  if (found == all.end()) {
-    throw StudyError(what + ": nothing to list (one of " + joined(known) +
-                     "): " + nearest_spelling(what, known));
+/// Prints all entries below their headings.
+void list_all(const Listed& listed) {
+  if (!listed.remark.empty()) std::cout << wrapped(listed.remark + "\n\n", output_width());
+  const std::vector<Entry> entries = listed.entries();
+  for (auto entry = entries.begin(); entry != entries.end();) {
+    const std::string heading = entry->heading;
+    TextPairs items;
+    for (; entry != entries.end() && entry->heading == heading; ++entry)
+      items.emplace_back(entry->short_name.empty() ? entry->name : entry->short_name,
+                         entry->summary);
+    if (!heading.empty()) std::cout << wrapped(heading, output_width());
+    std::cout << listing(items, heading.empty() ? 0 : 2);
   }
-  if (arguments.operands().size() == 1) return found->list(), kDone;
-  return found->describe(arguments.operands().back()), kDone;
+  std::cout << wrapped(
+      "\nMore about one of them: montecarta list " + listed.name + " " + listed.example,
+      output_width());
+}
+
+void describe(const Entry& entry) {
+  std::cout << wrapped(entry.name + ": " + entry.summary + "\n" + entry.more, output_width())
+            << "\n"
+            << listing(entry.facts);
+  for (const auto& [heading, items] : entry.tables)
+    std::cout << "\n" << heading << "\n" << listing(items);
+}
+
+/// Describes the entry of this name, or all entries with this short name, since several sections
+/// may have the same key.
+void describe_all(const Listed& listed, const std::string& name) {
+  std::vector<std::string> known;
+  bool is_first = true;
+  for (const Entry& entry : listed.entries()) {
+    known.push_back(entry.name);
+    if (!entry.short_name.empty()) known.push_back(entry.short_name);
+    if (name != entry.name && name != entry.short_name) continue;
+    std::cout << (is_first ? "" : "\n");
+    describe(entry);
+    is_first = false;
+  }
+  if (!is_first) return;
+  const std::string nearest = nearest_spelling(name, known);
+  throw StudyError(name + ": not in the list of " + listed.name + " (see montecarta list " +
+                   listed.name +
+                   "): " + (nearest.starts_with("known") ? "choose one of them" : nearest));
 }
 
 }  // namespace
 
-Command list_command() {
-  return {{.name = "list",
-           .summary = "List filters, settings, studies, worlds, metrics or columns",
-           .operands = {{"WHAT"}, {"NAME", 0}},
-           .options = {},
-           .details = "WHAT is filters, settings, studies, worlds, metrics or columns. With NAME "
-                      "that one is described in full.\n\n"
-                      "examples:\n"
-                      "  montecarta list filters\n"
-                      "  montecarta list settings scenario.noise\n"},
-          list};
+int list_command(const Arguments& arguments) {
+  const std::vector<Listed> all = {
+      {"filters", filters, "fastslam2"},
+      {"settings", settings, "scenario.noise"},
+      {"studies", [] { return shipped_entries("studies", ".ini", entry_of_study); }, "first_study"},
+      {"worlds", [] { return shipped_entries("worlds", ".csv", entry_of_world); }, "web_loop"},
+      {"metrics", metrics, "position_rmse"},
+      {"columns", columns, "pose_covariance",
+       "The study chooses groups of columns by record.columns. The group pose is always stored."}};
+  const std::string& what = arguments.operands().front();
+  const Listed& listed = item_called(what, all, &Listed::name, what + ": nothing to list");
+  if (arguments.operands().size() == 1) return list_all(listed), kDone;
+  return describe_all(listed, arguments.operands().back()), kDone;
 }
 
 }  // namespace montecarta::experiments

@@ -8,9 +8,8 @@
 #include <iostream>
 
 namespace montecarta::experiments {
-namespace {
 
-int merge(const Arguments& arguments) {
+int merge_command(const Arguments& arguments) {
   const std::vector<std::string>& names = arguments.operands();
   const std::vector<std::filesystem::path> shards(names.begin() + 1, names.end());
   const Existing existing = arguments.has("force") ? Existing::replace : Existing::refuse;
@@ -21,19 +20,6 @@ int merge(const Arguments& arguments) {
             << shards.size() << " files, " << bytes_text(static_cast<double>(summary.bytes))
             << ", stored in " << names.front() << "\n";
   return kDone;
-}
-
-}  // namespace
-
-Command merge_command() {
-  return {{.name = "merge",
-           .summary = "Join the shards of a study to one file",
-           .operands = {{"OUT.h5"}, {"SHARD.h5", 1, SIZE_MAX}},
-           .options = {{"force", "", {}, "replace OUT.h5"}},
-           .details = "It is an error if shards belong to different studies, if runs are missing, "
-                      "or if a run differs between shards.\n\nexample:\n  "
-                      "montecarta merge study.h5 shard0.h5 shard1.h5\n"},
-          merge};
 }
 
 }  // namespace montecarta::experiments

@@ -3,7 +3,6 @@
 #include "analysis/output/number_text.hpp"
 #include "analysis/output/text_table.hpp"
 #include "analysis/statistics/nees_power.hpp"
-#include "engine/errors.hpp"
 #include "engine/wrapped_text.hpp"
 #include "experiments/commands/commands.hpp"
 
@@ -53,24 +52,21 @@ std::string about_scans(std::uint64_t scans) {
          "rows.\n";
 }
 
-int plan(const Arguments& arguments) {
-  const auto dimension = arguments.count("dim", 1, 1000);
-  const auto ratio = arguments.number("ratio", 1e-6, 1e6);
-  if (!dimension || !ratio) {
-    throw StudyError(
-        "plan: --dim D and --ratio R are needed (dimension of the error, and ratio of its NEES): "
-        "add e.g. --dim 3 --ratio 1.5");
-  }
+}  // namespace
+
+int plan_command(const Arguments& arguments) {
+  const double ratio = arguments.number("ratio", 1e-6, 1e6).value();
   const auto probability = [&](const char* option, double usual) {
     return arguments.number(option, kLeastProbability, 1.0 - kLeastProbability).value_or(usual);
   };
-  NeesTest test{.dimension = *dimension, .level = probability("level", 0.95)};
+  NeesTest test{.dimension = arguments.count("dim", 1, 1000).value(),
+                .level = probability("level", 0.95)};
   const Question question{
-      .ratio = *ratio,
+      .ratio = ratio,
       .within = arguments.number("within", kLeastMargin, kMostMargin).value_or(kUsualMargin),
       .power = probability("power", 0.9)};
   const std::uint64_t scans = arguments.count("scans", 1, kMostPlannedScans).value_or(1);
-  std::vector<TableRow> rows{{"NEES within a run", "runs: detect " + readable(*ratio),
+  std::vector<TableRow> rows{{"NEES within a run", "runs: detect " + readable(ratio),
                               "show within " + readable(question.within)}};
   rows.push_back(row_of("constant", test, question));
   test.scans = scans;
@@ -79,24 +75,6 @@ int plan(const Arguments& arguments) {
   std::cout << aligned(rows, 0) << "\n" << wrapped(meaning_of(test, question), output_width());
   if (scans > 1) std::cout << wrapped(about_scans(scans), output_width());
   return kDone;
-}
-
-}  // namespace
-
-Command plan_command() {
-  return {{.name = "plan",
-           .summary = "Print how many runs a test of the NEES needs",
-           .operands = {},
-           .options =
-               {{"dim", "", {"D"}, "dimension of the error: 3 for a pose, 2 for a position"},
-                {"ratio", "", {"R"}, "ratio of the NEES to its expected value, to be detected"},
-                {"power", "", {"P"}, "probability of detecting or showing it; default 0.9"},
-                {"within", "", {"M"}, "ratios from 1/M to M are consistent; default 1.1"},
-                {"level", "", {"L"}, "probability that a consistent filter passes; default 0.95"},
-                {"scans", "", {"K"}, "also for runs of K independent scans"}},
-           .details = "examples:\n  montecarta plan --dim 3 --ratio 1.5\n  montecarta plan --dim 3 "
-                      "--ratio 1.2 --power 0.8 --scans 100\n"},
-          plan};
 }
 
 }  // namespace montecarta::experiments

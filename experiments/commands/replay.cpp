@@ -21,19 +21,10 @@
 namespace montecarta::experiments {
 namespace {
 
-std::string needed(const Arguments& arguments, const std::string& option, const char* remedy) {
-  const auto given = arguments.text(option);
-  if (!given) throw StudyError("replay: --" + option + " is missing: " + remedy);
-  return *given;
-}
-
 std::size_t cell_of(const Study& study, const std::string& label) {
-  std::vector<std::string> known;
-  for (const CellSpec& cell : study.cells) known.push_back(cell.label);
-  const auto found = std::ranges::find(known, label);
-  if (found != known.end()) return static_cast<std::size_t>(found - known.begin());
-  throw StudyError("--cell " + label +
-                   ": no cell of this study: " + nearest_spelling(label, known));
+  const CellSpec& cell = item_called(label, study.cells, &CellSpec::label,
+                                     "--cell " + label + ": no cell of this study");
+  return static_cast<std::size_t>(&cell - study.cells.data());
 }
 
 /// All columns that this study can record. Without identities there is no ground truth for
@@ -93,10 +84,11 @@ RunOptions options_of(const Arguments& arguments, const std::string& output) {
   return options;
 }
 
-int replay(const Arguments& arguments) {
-  const std::string output = needed(arguments, "output", "add -o ONE.h5");
-  const std::string label = needed(arguments, "cell", "add --cell C; montecarta info names them");
-  needed(arguments, "run", "add --run R, a number from 0");
+}  // namespace
+
+int replay_command(const Arguments& arguments) {
+  const std::string output = arguments.text("output").value();
+  const std::string label = arguments.text("cell").value();
   const ResultFile file = open_stored(arguments.operands().front());
   const std::uint64_t run = arguments.count("run", 0, file.study_runs() - 1).value();
   refuse_input_as_output(output, arguments.operands());
@@ -115,26 +107,6 @@ int replay(const Arguments& arguments) {
   if (!departs) return exit_code(outcome, runs_under_scheduler());
   std::cout << wrapped(*departs, output_width(), 2);
   return kDifferent;
-}
-
-}  // namespace
-
-Command replay_command() {
-  return {{.name = "replay",
-           .summary = "Repeat one run with everything recorded: particles, weights, maps",
-           .operands = {{"FILE.h5"}},
-           .options = {{"output", "o", {"ONE.h5"}, "file to write"},
-                       {"cell", "", {"CELL"}, "label of the cell"},
-                       {"run", "", {"R"}, "number of the run, from 0"},
-                       data_option(),
-                       external_option(),
-                       {"force", "", {}, "replace ONE.h5"},
-                       {"threads", "", {"N"}, kThreadsMeaning},
-                       {"backend", "", {"tbb|openmp|serial"}, kBackendMeaning}},
-           .details = "The exit code is 4 if the repeated run differs in a byte from the one in "
-                      "FILE.h5. ONE.h5 is written in any case.\n\nexample:\n  montecarta replay "
-                      "first_study.h5 --cell ekf_slam --run 3 -o run3.h5\n"},
-          replay};
 }
 
 }  // namespace montecarta::experiments

@@ -3,7 +3,6 @@
 
 #include "analysis/data/study_settings.hpp"
 #include "analysis/output/gnuplot.hpp"
-#include "engine/errors.hpp"
 #include "experiments/commands/arguments.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/stored_result.hpp"
@@ -27,10 +26,10 @@ void expect_gnuplot() {
   run_gnuplot(folder, "trial.gp");
 }
 
-int report(const Arguments& arguments) {
-  const auto directory = arguments.text("output");
-  if (!directory)
-    throw StudyError("report: -o DIR is missing (figures need a place): add e.g. -o report");
+}  // namespace
+
+int report_command(const Arguments& arguments) {
+  const std::filesystem::path directory = arguments.text("output").value();
   const Parallel parallel = parallel_of(arguments);
   ReportOptions options;
   options.level = arguments.number("level", 1e-9, 1.0 - 1e-9).value_or(options.level);
@@ -39,27 +38,9 @@ int report(const Arguments& arguments) {
   options.existing = arguments.has("force") ? ExistingReport::replace : ExistingReport::refuse;
   options.parallel = &parallel;
   expect_gnuplot();
-  write_report(open_stored(arguments.operands().front()), *directory, options);
-  std::cout << (std::filesystem::path(*directory) / "index.html").string() << "\n";
+  write_report(open_stored(arguments.operands().front()), directory, options);
+  std::cout << (directory / "index.html").string() << "\n";
   return kDone;
-}
-
-}  // namespace
-
-Command report_command() {
-  return {{.name = "report",
-           .summary = "Write figures, tables and one self-contained index.html",
-           .operands = {{"FILE.h5"}},
-           .options = {{"output", "o", {"DIR"}, "folder to write to"},
-                       {"level", "", {"L"}, kLevelMeaning},
-                       {"within", "", {"R"}, kWithinMeaning},
-                       {"run", "", {"R"}, "run to draw; default: first complete one"},
-                       {"force", "", {}, "replace an existing report"},
-                       {"threads", "", {"N"}, kThreadsMeaning},
-                       {"backend", "", {"tbb|openmp|serial"}, kBackendMeaning}},
-           .details = "Figures are SVG and PDF, tables CSV and LaTeX.\n\nexample:\n  montecarta "
-                      "report first_study.h5 -o first_study_report\n"},
-          report};
 }
 
 }  // namespace montecarta::experiments

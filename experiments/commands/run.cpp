@@ -29,7 +29,7 @@ constexpr std::uintmax_t kLargestVerdict = 2'000'000'000;
 constexpr double kLeastBudget = 0.001;
 
 ProgressStyle progress_of(const Arguments& arguments) {
-  const std::string style = arguments.choice("progress", {"auto", "plain", "none"});
+  const auto style = arguments.text("progress");
   return style == "plain"  ? ProgressStyle::plain
          : style == "none" ? ProgressStyle::none
                            : ProgressStyle::automatic;
@@ -124,7 +124,9 @@ void tell_results(const RunOptions& options, const std::optional<std::filesystem
   print_where_to_look(options.output.string(), report ? draw_report(file, *report, options) : "");
 }
 
-int run(const Arguments& arguments) {
+}  // namespace
+
+int run_command(const Arguments& arguments) {
   const Study study = study_of(arguments);
   const RunOptions options = options_of(study, arguments);
   const auto report = report_folder(options, arguments);
@@ -142,34 +144,6 @@ int run(const Arguments& arguments) {
               << "\n";
   }
   return exit_code(outcome, runs_under_scheduler());
-}
-
-}  // namespace
-
-Command run_command() {
-  CommandSpec spec{
-      .name = "run",
-      .summary = "Run a study and store every run in one HDF5 file",
-      .operands = {{"STUDY.ini"}},
-      .options = {{"output", "o", {"OUT.h5"}, "result file; default: named after the study"}},
-      .details =
-          "Without -o a report is written beside the result. The result is called OUT.h5.part "
-          "until it is complete. It depends on the study alone, not on threads, backend, shards or "
-          "interruptions.\nCtrl-C closes the file and prints the command that continues. Exit "
-          "codes: 0 done, 3 done but some runs failed, 85 stopped at a checkpoint, 130 or 143 "
-          "interrupted, 2 wrong input, 1 failed.\n\nexamples:\n  montecarta run first_study\n  "
-          "montecarta run study.ini -o out.h5 --set study.runs=500\n  montecarta run study.ini -o "
-          "shard0.h5 --shard 0/4\n"};
-  for (const OptionSpec& option : plan_options()) spec.options.push_back(option);
-  const std::vector<OptionSpec> more = {
-      {"resume", "", {}, "continue OUT.h5.part"},
-      {"attempt", "", {}, "as --resume, for schedulers that restart jobs (see cluster/README.md)"},
-      {"force", "", {}, "replace OUT.h5 and OUT.h5.part"},
-      {"time-budget", "", {"SECONDS"}, "stop after this time, with exit code 85"},
-      {"quiet", "", {}, "print neither progress nor verdict"},
-      {"progress", "", {"auto|plain|none"}, "how progress is shown on standard error"}};
-  spec.options.insert(spec.options.end(), more.begin(), more.end());
-  return {spec, run};
 }
 
 }  // namespace montecarta::experiments

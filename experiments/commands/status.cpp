@@ -102,7 +102,9 @@ std::string status_line(const std::string& name, Depth depth) {
   return name + "\t" + line + "\n";
 }
 
-int status(const Arguments& arguments) {
+}  // namespace
+
+int status_command(const Arguments& arguments) {
   if (arguments.has("each")) {
     const Depth depth = arguments.has("whole") ? Depth::every_byte : Depth::statuses;
     for (const std::string& name : arguments.operands()) std::cout << status_line(name, depth);
@@ -116,22 +118,6 @@ int status(const Arguments& arguments) {
   }
   status->print();
   return kDone;
-}
-
-}  // namespace
-
-Command status_command() {
-  return {
-      {.name = "status",
-       .summary = "Count complete, failed and missing runs, over one file or shards",
-       .operands = {{"FILE.h5", 1, SIZE_MAX}},
-       .options = {{"each", "", {}, "print one line per file, for scripts"},
-                   {"whole", "", {}, "with --each: check every byte, not only the states of runs"}},
-       .details = "A line of --each has these fields, separated by tabs: file, state (complete, "
-                  "unfinished or damaged), SHA-256 of the study, complete, failed and missing runs "
-                  "of all cells, wall time in seconds, and error.\n\nexample:\n  "
-                  "montecarta status shard*.h5\n"},
-      status};
 }
 
 }  // namespace montecarta::experiments

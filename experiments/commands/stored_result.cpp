@@ -44,10 +44,6 @@ std::vector<TableRow> without_idle_spared(std::vector<TableRow> rows) {
   return rows;
 }
 
-OptionSpec data_option() {
-  return {"data", "", {"FOLDER[,...]"}, "folders of the recorded drives, in order"};
-}
-
 Study study_in(const ResultFile& file, const Arguments& arguments) {
   if (file.study_text().starts_with(kImportedSection)) {
     throw StudyError(file.path().string() +

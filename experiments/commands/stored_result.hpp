@@ -24,10 +24,6 @@ RunCounts count_status(const std::vector<RunStatus>& status);
 /// Removes the last column of a table, which counts spared runs, if no cell has any.
 std::vector<TableRow> without_idle_spared(std::vector<TableRow> rows);
 
-/// The option --data FOLDER, which names the folder of a recorded drive. A result file holds
-/// everything of a study except recorded data.
-OptionSpec data_option();
-
 /// The study that a result file holds, with its recorded drive read from --data or
 /// $MONTECARTA_DATA. Warns on standard error if this build may round differently from the one that
 /// made the file. Throws StudyError if the drive is missing or is another one.

@@ -75,7 +75,9 @@ std::uint64_t seed_of(const Arguments& arguments) {
       .value_or(static_cast<std::uint64_t>(now) % 1'000'000);
 }
 
-int verify(const Arguments& arguments) {
+}  // namespace
+
+int verify_command(const Arguments& arguments) {
   const std::uint64_t seed = seed_of(arguments);
   const std::uint64_t count = arguments.count("sample", 1, UINT64_MAX).value_or(kSample);
   const ResultFile file = open_stored(arguments.operands().front());
@@ -101,30 +103,6 @@ int verify(const Arguments& arguments) {
                            std::to_string(seed) + ")",
                        output_width());
   return equal == std::ssize(chosen) && damaged == 0 ? kDone : kDifferent;
-}
-
-}  // namespace
-
-Command verify_command() {
-  return {
-      {.name = "verify",
-       .summary = "Recompute stored runs and compare every byte",
-       .operands = {{"FILE.h5"}},
-       .options = {{"sample", "", {"K"}, "number of runs to recompute; default 10"},
-                   {"seed", "", {"S"}, "repeat the sample of an earlier call"},
-                   data_option(),
-                   external_option(),
-                   {"threads", "", {"N"}, kThreadsMeaning},
-                   {"backend", "", {"tbb|openmp|serial"}, kBackendMeaning}},
-       .details = "The exit code is 4 if a run differs. The runs are chosen at random. All stored "
-                  "runs are also compared with their fingerprints. The study is read from the "
-                  "file.\nThe bytes are guaranteed to be the same with the same version, compiler "
-                  "and C library on any x86-64-v3 processor or newer. If this build differs from "
-                  "that of the file (montecarta info FILE.h5), a warning is printed first. An "
-                  "external program is started anew for each run, so that state which it keeps "
-                  "between runs is detected.\n\nexample:\n  montecarta verify first_study.h5 "
-                  "--sample 20\n"},
-      verify};
 }
 
 }  // namespace montecarta::experiments

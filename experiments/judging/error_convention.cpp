@@ -104,19 +104,6 @@ std::span<const Convention> conventions_of(StateKind kind) {
   return std::span(kConventions).first(kind == StateKind::vector ? 1 : kConventions.size());
 }
 
-std::string explained_conventions() {
-  return "  world: mean - truth in the frame of the map. The difference of headings is wrapped. "
-         "That "
-         "of rotations is Log(R_mean R_truth'), with x, y, z of the map.\n"
-         "  body: the same in the frame of the estimated pose, R_mean' (p_mean - p_truth). That of "
-         "rotations is Log(R_truth' R_mean).\n"
-         "  right-invariant: Log(X_mean X_truth^-1) of SE(2) or SE(3), the error of invariant "
-         "filters, which rotates the whole map about its origin.\n"
-         "The components are x, y, heading, or in space x, y, z, rx, ry, rz (m, rad), position "
-         "first. A state that is not a pose has the error world: mean - truth, wrapped if the unit "
-         "is rad.\n";
-}
-
 Eigen::VectorXd error_of(const StateShape& shape, Convention convention,
                          const Eigen::VectorXd& mean, const Eigen::VectorXd& truth) {
   switch (shape.kind) {

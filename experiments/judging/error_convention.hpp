@@ -21,9 +21,6 @@ std::string nees_column(ErrorConvention convention);
 /// The conventions that a state may have: all for a pose, only `world` for a vector.
 std::span<const ErrorConvention> conventions_of(StateKind kind);
 
-/// A description of each convention, for users who did not choose one.
-std::string explained_conventions();
-
 /// The error {d} of an estimate under a convention that its state may have. `mean` and `truth` are
 /// in the order of StateShape::columns.
 Eigen::VectorXd error_of(const StateShape& shape, ErrorConvention convention,

@@ -182,8 +182,8 @@ ErrorConvention stated_error(const LongestRun& longest, std::optional<ErrorConve
   if (!said) {
     throw StudyError(
         "judge: --error is missing (the verdict depends on the error that the covariance "
-        "describes): give --error with one of\n" +
-        explained_conventions());
+        "describes): give --error world, body or right-invariant, which montecarta judge --help "
+        "explains");
   }
   if (std::ranges::find(known, *said) != known.end()) return *said;
   throw StudyError("--error " + name_of(*said) + ": not of a vector (" + longest.path.string() +

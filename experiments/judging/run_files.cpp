@@ -197,16 +197,6 @@ FilesByRun truths_of(const FilesByRun& first, const std::vector<std::string>& tr
 
 }  // namespace
 
-std::string pairing_rule() {
-  return "The number of the run is the number at the end of the file's name or, if that has none, "
-         "of the innermost folder that has one: run_0007/estimate.csv, 7.csv and ekf_7.csv are run "
-         "7. The rest of the path names the estimator: ekf/run_0007.csv and pf/run_0007.csv are "
-         "the cells ekf and pf, and so are run_0007/ekf.csv and run_0007/pf.csv. Estimators of the "
-         "same runs are compared run by run. One estimate alone needs no number. A single truth "
-         "without a number is the truth of all runs; otherwise each run has its own, with the same "
-         "number.\n";
-}
-
 JudgedFiles pair_files(const std::vector<std::string>& estimates,
                        const std::vector<std::string>& truths,
                        const std::optional<std::string>& cell) {

@@ -22,12 +22,9 @@ struct JudgedFiles {
   std::vector<EstimatorFiles> cells;         ///< ordered by label
 };
 
-/// How files are paired, for --help.
-std::string pairing_rule();
-
-/// Pairs estimates with truths by that rule. `truths` are files, folders that `export` made, or
-/// their folder truth/. `cell`, if given, is the label of all estimates. Throws StudyError if a run
-/// occurs twice or is missing.
+/// Pairs estimates with truths by the numbers in their names (montecarta judge --help). `truths`
+/// are files, folders that `export` made, or their folder truth/. `cell`, if given, is the label of
+/// all estimates. Throws StudyError if a run occurs twice or is missing.
 JudgedFiles pair_files(const std::vector<std::string>& estimates,
                        const std::vector<std::string>& truths,
                        const std::optional<std::string>& cell);

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/errors.hpp"
+
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -30,6 +33,19 @@ std::string shortened(const std::string& message);
 std::size_t edit_distance(std::string_view a, std::string_view b);
 /// "did you mean X?" for the known spelling nearest to `word`, else "known: a, b, c".
 std::string nearest_spelling(std::string_view word, std::span<const std::string> known);
+
+/// The item of a container whose `name_of` is `name`. Throws StudyError, worded `problem` and the
+/// nearest name as a remedy, if there is none.
+template <class Items, class NameOf>
+auto& item_called(std::string_view name, Items&& items, const NameOf& name_of,
+                  const std::string& problem) {
+  std::vector<std::string> known;
+  for (auto& item : items) {
+    known.emplace_back(std::invoke(name_of, item));
+    if (known.back() == name) return item;
+  }
+  throw StudyError(problem + ": " + nearest_spelling(name, known));
+}
 
 /// Parses all of `text` as a number in the C locale; nullopt if it is not a finite number.
 std::optional<double> to_number(std::string_view text);

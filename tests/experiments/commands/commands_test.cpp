@@ -56,7 +56,7 @@ TEST_F(Commands, WrongInputIsNamedWithItsRemedy) {
   expect_wrong({"info", "absent.h5"}, "absent.h5");
   expect_wrong({"bounds", "--runs", "30"}, "--dim D");
   expect_wrong({"bounds", "--match", "2.19", "many"}, "--match many: no end of an interval");
-  expect_wrong({"report", "absent.h5"}, "figures need a place");
+  expect_wrong({"report", "absent.h5"}, "report: -o DIR is missing");
   expect_wrong({"plan", "--dim", "3"}, "--ratio R");
   expect_wrong({"plan", "--dim", "3", "--ratio", "1"}, "neither 1 nor 0");
   const std::vector<std::pair<std::vector<std::string>, std::string>> options = {
@@ -333,14 +333,35 @@ TEST_F(AttemptCommand, EachFileHasALineWhateverItIs) {
   EXPECT_THAT(call({"status", "--each", "--whole", "out.h5"}).out, StartsWith("out.h5\tdamaged\t"));
 }
 
-const CommandSpec kSpec{.name = "bake",
-                        .summary = "bakes",
-                        .operands = {{"DOUGH", 1, 1}, {"TIN", 0, SIZE_MAX}},
-                        .options = {{"output", "o", {"OUT"}, "where to"},
-                                    {"set", "", {"K=V"}, "", true},
-                                    {"hot", "", {}, "quickly"},
-                                    {"match", "", {"LO", "HI"}, ""}},
-                        .details = {}};
+const CommandSpec kSpec = read_commands(R"(About this file.
+
+## options
+of several commands
+--hot  quickly
+
+## bake DOUGH [TIN...] -o OUT
+bakes
+-o, --output OUT  where to
+--set K=V ...  repeated
+--hot
+--grain rye|oat  which
+--from NAME...  a list
+--match LO HI  two values
+
+Bakes a
+loaf.
+  an item
+    of two lines
+)")
+                              .front();
+
+TEST(Commands_md, SaysHowACommandIsCalled) {
+  EXPECT_EQ(kSpec.name, "bake");
+  EXPECT_EQ(kSpec.details, "Bakes a loaf.\n  an item of two lines");
+  EXPECT_THAT(help_text(kSpec), AllOf(StartsWith("usage: montecarta bake DOUGH [TIN...] -o OUT"),
+                                      HasSubstr("--hot            quickly\n"),
+                                      HasSubstr("  -o, --output OUT     where to\n")));
+}
 
 std::string complaint_about(const std::vector<std::string>& words) {
   return engine::complaint_of([&] { Arguments(kSpec, words); });
@@ -348,12 +369,13 @@ std::string complaint_about(const std::vector<std::string>& words) {
 
 TEST(Arguments, AreOptionsAndOperandsInAnyOrder) {
   const Arguments arguments(kSpec, {"--set", "a=1", "rye", "-o", "bread", "--hot", "--set=b=2",
-                                    "tin", "--match", "1", "2"});
+                                    "tin", "--match", "1", "2", "--from", "x", "y"});
   EXPECT_THAT(arguments.operands(), ElementsAre("rye", "tin"));
   EXPECT_EQ(arguments.text("output"), "bread");
   EXPECT_TRUE(arguments.has("hot"));
   EXPECT_THAT(arguments.texts("set"), ElementsAre("a=1", "b=2"));
   EXPECT_THAT(arguments.texts("match"), ElementsAre("1", "2"));
+  EXPECT_THAT(arguments.texts("from"), ElementsAre("x", "y"));
 }
 
 TEST(Arguments, AreRefusedWhereTheyAreNotWhatTheCommandTakes) {
@@ -365,6 +387,9 @@ TEST(Arguments, AreRefusedWhereTheyAreNotWhatTheCommandTakes) {
   EXPECT_THAT(complaint_about({"rye", "-o", "a", "-o", "b"}), HasSubstr("--output: given 2 times"));
   EXPECT_THAT(complaint_about({"rye", "--match", "1"}), HasSubstr("--match: 1 values"));
   EXPECT_THAT(complaint_about({"rye", "-o"}), testing::StartsWith("bake: "));
+  EXPECT_THAT(complaint_about({"rye", "-o", "a", "--grain", "ryo"}),
+              HasSubstr("(one of rye, oat): did you mean rye?"));
+  EXPECT_THAT(complaint_about({"rye"}), HasSubstr("bake: -o OUT is missing (where to)"));
 }
 
 TEST(Arguments, ReadNumbersWithinLimits) {

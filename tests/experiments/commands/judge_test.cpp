@@ -204,7 +204,7 @@ TEST_F(Judge, WrongInputIsNamed) {
   EXPECT_EQ(none.code, 2);
   EXPECT_THAT(none.err, HasSubstr("--error is missing"));
   EXPECT_THAT(judge({"e_0.csv"}, {"--error", "world", "-o", "mine.h5"}).err,
-              HasSubstr("--truth is missing"));
+              HasSubstr("--truth PATH... is missing"));
   EXPECT_THAT(judge({"e_0.csv"}, {"--error", "world", "-o", "m.h5", "--truth", "nowhere.csv"}).err,
               HasSubstr("nowhere.csv: cannot be opened"));
   EXPECT_THAT(call({"judge", "--help"}).out,

@@ -75,7 +75,7 @@ TEST_F(Verify, WrongInputIsNamed) {
   refused("fastslam2_m1", "1", "one.h5", "did you mean fastslam2_m10?");
   refused("ekf_slam", "3", "one.h5", "from 0 to 2");
   refused("ekf_slam", "1", "out.h5", "out.h5");
-  expect_refused({"replay", "out.h5", "--cell", "ekf_slam", "--run", "1"}, "--output is missing");
+  expect_refused({"replay", "out.h5", "--cell", "ekf_slam", "--run", "1"}, "-o ONE.h5 is missing");
   EXPECT_FALSE(exists("one.h5"));
 }
 

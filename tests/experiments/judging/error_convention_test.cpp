@@ -5,6 +5,8 @@
 #include "analysis/metrics/nees.hpp"
 #include "engine/numbers/angle.hpp"
 #include "engine/random/stream.hpp"
+#include "experiments/commands/commands.hpp"
+#include "experiments/text/words.hpp"
 #include "tests/analysis/verdict_studies.hpp"
 #include "tests/doubles/matchers.hpp"
 
@@ -171,8 +173,12 @@ TEST(ErrorConvention, TurnsCovariancesIntoTheMap) {
 }
 
 TEST(ErrorConvention, IsExplained) {
-  for (const ErrorConvention convention : conventions_of(StateKind::pose))
-    EXPECT_THAT(explained_conventions(), HasSubstr(name_of(convention)));
+  std::vector<std::string> names;
+  for (const ErrorConvention convention : conventions_of(StateKind::pose)) {
+    names.push_back(name_of(convention));
+    EXPECT_THAT(commands_text(), HasSubstr("\n  " + names.back() + ": "));
+  }
+  EXPECT_THAT(commands_text(), HasSubstr("--error " + joined(names, "|") + "  "));
 }
 
 constexpr std::uint64_t kRuns = 20, kScans = 10;
