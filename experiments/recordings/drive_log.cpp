@@ -2,6 +2,7 @@
 #include "experiments/recordings/drive_log.hpp"
 
 #include "engine/errors.hpp"
+#include "experiments/recordings/log_csv.hpp"
 #include "experiments/text/words.hpp"
 #include "experiments/worlds/world.hpp"
 
@@ -15,12 +16,6 @@ namespace {
 
 constexpr double kLatestTime = 1e10;  ///< [s] larger numbers are probably nanoseconds
 constexpr double kLongestHold = 5.0;  ///< [s] for which scans may continue after the odometry
-
-/// Name of a part of a log in errors: its own file, or a part of `place`.
-std::string part_of_log(const std::string& place, LogForm form, const char* noun,
-                        const char* file) {
-  return form == LogForm::csv ? place + "/" + file : place + " (" + noun + ")";
-}
 
 /// A record of a file, for errors.
 struct Record {
@@ -112,21 +107,6 @@ bool is_name(const std::string& name) {
   return !name.empty() && name.size() <= 64 && std::ranges::all_of(name, fits);
 }
 
-void check_references(const DriveLog& log, const std::string& place) {
-  std::set<std::string> names;
-  for (const ReferencePath& reference : log.references) {
-    check_reference(reference, place + " (reference " + excerpt(reference.name) + ")");
-    if (names.insert(reference.name).second) continue;
-    throw StudyError(place + ": two references called " + reference.name +
-                     " (each has a name of its own): rename one");
-  }
-  if (names.empty()) {
-    throw StudyError(place +
-                     ": no reference (a drive is judged by one): add the fixes of a GPS, or "
-                     "another measurement of the path");
-  }
-}
-
 /// Checks that covariances are given for all fixes or for none, with plausible standard deviations.
 void check_covariances(const ReferencePath& reference, const std::string& place) {
   const std::vector<Eigen::Matrix3d>& covariance = reference.covariance;
@@ -143,36 +123,6 @@ void check_covariances(const ReferencePath& reference, const std::string& place)
     }
   }
 }
-
-/// Refuses scans long after the last odometry. Odometry holds until its next record, so if none
-/// follows for that long, the file was probably cut.
-void check_end(const DriveLog& log, const std::string& place, LogForm form) {
-  const double last_scan = log.scans.back().time, last_move = log.odometry.back().time;
-  if (last_scan <= last_move + kLongestHold) return;
-  throw StudyError(part_of_log(place, form, "odometry", "odometry.csv") +
-                   ": the last record is at " + to_text(last_move) + " s, the last scan at " +
-                   to_text(last_scan) +
-                   " s (the motion in between is unknown; was the file cut short?): "
-                   "take the whole file, or leave out the scans");
-}
-
-/// Refuses scans before the start, where the pose is unknown, and odometry that ends before the
-/// start.
-void check_start(const DriveLog& log, const std::string& place, LogForm form) {
-  const std::string start = to_text(log.start_time) + " s";
-  if (log.scans.front().time < log.start_time) {
-    throw StudyError(part_of_log(place, form, "scans", "detections.csv") + ": the first is at " +
-                     to_text(log.scans.front().time) + " s, before the start at " + start +
-                     " (its pose is unknown): give an earlier start, or leave it out");
-  }
-  if (log.odometry.back().time < log.start_time) {
-    throw StudyError(part_of_log(place, form, "odometry", "odometry.csv") +
-                     ": all of it is before the start at " + start +
-                     " (the vehicle would never move): correct the time of the start");
-  }
-}
-
-}  // namespace
 
 void check_odometry(std::span<const Odometry> odometry, std::span<const Quantity> controls,
                     const std::string& place) {
@@ -223,18 +173,62 @@ void check_landmarks(std::span<const Eigen::Vector2d> landmarks, const std::stri
   for (std::size_t i = 0; i < landmarks.size(); ++i) Record{place, i}.place_on_map(landmarks[i]);
 }
 
-void check_log(const DriveLog& log, const std::string& place, LogForm form) {
-  const std::string start = part_of_log(place, form, "start", "start.csv");
+void check_references(const DriveLog& log, const std::string& place) {
+  std::set<std::string> names;
+  for (const ReferencePath& reference : log.references) {
+    check_reference(reference, place + "/" + file_of_reference(excerpt(reference.name)));
+    if (names.insert(reference.name).second) continue;
+    throw StudyError(place + ": two references called " + reference.name +
+                     " (each has a name of its own): rename one");
+  }
+  if (names.empty()) {
+    throw StudyError(place +
+                     ": no reference (a drive is judged by one): add the fixes of a GPS, or "
+                     "another measurement of the path");
+  }
+}
+
+/// Refuses scans long after the last odometry. Odometry holds until its next record, so if none
+/// follows for that long, the file was probably cut.
+void check_end(const DriveLog& log, const std::string& place) {
+  const double last_scan = log.scans.back().time, last_move = log.odometry.back().time;
+  if (last_scan <= last_move + kLongestHold) return;
+  throw StudyError(place + ": the last record is at " + to_text(last_move) +
+                   " s, the last scan at " + to_text(last_scan) +
+                   " s (the motion in between is unknown; was the file cut short?): "
+                   "take the whole file, or leave out the scans");
+}
+
+/// Refuses scans before the start, where the pose is unknown, and odometry that ends before the
+/// start.
+void check_start(const DriveLog& log, const std::string& scans, const std::string& odometry) {
+  const std::string start = to_text(log.start_time) + " s";
+  if (log.scans.front().time < log.start_time) {
+    throw StudyError(scans + ": the first is at " + to_text(log.scans.front().time) +
+                     " s, before the start at " + start +
+                     " (its pose is unknown): give an earlier start, or leave it out");
+  }
+  if (log.odometry.back().time < log.start_time) {
+    throw StudyError(odometry + ": all of it is before the start at " + start +
+                     " (the vehicle would never move): correct the time of the start");
+  }
+}
+
+}  // namespace
+
+void check_log(const DriveLog& log, const std::string& folder) {
+  const std::string start = folder + "/start.csv", odometry = folder + "/odometry.csv",
+                    scans = folder + "/detections.csv";
   Record{start, 0}.limit(log.start_time, kLatestTime, "time", "seconds, a finite number");
   Record{start, 0}.place_on_map({log.start.x, log.start.y});
   Record{start, 0}.limit(log.start.heading, 1e3 * kPi, "heading", "radians");
-  check_odometry(log.odometry, log.controls, part_of_log(place, form, "odometry", "odometry.csv"));
-  check_scans(log.scans, part_of_log(place, form, "scans", "detections.csv"), log.components);
-  check_references(log, place);
-  check_landmarks(log.landmarks, part_of_log(place, form, "landmarks", "landmarks.csv"));
-  check_identities(log, part_of_log(place, form, "scans", "detections.csv"));
-  check_start(log, place, form);
-  check_end(log, place, form);
+  check_odometry(log.odometry, log.controls, odometry);
+  check_scans(log.scans, scans, log.components);
+  check_references(log, folder);
+  check_landmarks(log.landmarks, folder + "/landmarks.csv");
+  check_identities(log, scans);
+  check_start(log, scans, odometry);
+  check_end(log, odometry);
 }
 
 }  // namespace montecarta::experiments

@@ -42,22 +42,12 @@ struct DriveLog {
 /// Bound on identities. No map has so many landmarks, so larger ones are mistakes.
 inline constexpr std::int32_t kMostIdentities = 1'000'000;
 
-// Each of these throws StudyError "place: record N: problem (why): remedy" for the first record
-// (from 1) that is impossible: its time does not increase, or a number is not finite or not
-// plausible for a vehicle, e.g. degrees instead of radians. `place` is the file.
-void check_odometry(std::span<const Odometry> odometry, std::span<const Quantity> controls,
-                    const std::string& place);
-void check_scans(std::span<const LoggedScan> scans, const std::string& place,
-                 std::span<const Quantity> components = components_of(Sensor()));
-void check_reference(const ReferencePath& reference, const std::string& place);
-void check_landmarks(std::span<const Eigen::Vector2d> landmarks, const std::string& place);
-
-/// How a log is stored: as files of kind = log, which errors then name, or in another way.
-enum class LogForm { csv, other };
-
-/// Checks all parts of the log as above, and that they fit together: odometry, scans and a
-/// reference exist, references have different names, identities are given to all detections or to
-/// none and belong to a landmark if landmarks are known. `place` is the folder.
-void check_log(const DriveLog& log, const std::string& place, LogForm form = LogForm::other);
+/// Throws StudyError "FILE: record N: problem (why): remedy" for the first record (from 1) that is
+/// impossible: its time does not increase, or a number is not finite or not plausible for a
+/// vehicle, e.g. degrees instead of radians. Also checks that the parts fit together: odometry,
+/// scans and a reference exist, references have different names, identities are given to all
+/// detections or to none and belong to a landmark if landmarks are known. Files are those of kind =
+/// log in `folder`.
+void check_log(const DriveLog& log, const std::string& folder);
 
 }  // namespace montecarta::experiments

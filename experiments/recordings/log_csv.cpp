@@ -21,8 +21,43 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Headers of a file of a log, without and with its optional last column.
+using Headers = std::array<std::string, 2>;
+
+const std::array<std::string, 1> kStartHeader = {"time_s,x_m,y_m,heading_rad"};
+const Headers kLandmarkHeaders = {"x_m,y_m", "x_m,y_m,identity"};
+/// Headers of a reference: a position or a pose, without errors, with their standard deviations and
+/// with their covariance.
+const std::array<std::string, 6> kReferenceHeaders = {
+    "time_s,x_m,y_m",
+    "time_s,x_m,y_m,heading_rad",
+    "time_s,x_m,y_m,sigma_x_m,sigma_y_m",
+    "time_s,x_m,y_m,heading_rad,sigma_x_m,sigma_y_m,sigma_heading_rad",
+    "time_s,x_m,y_m,var_x_m2,cov_x_y_m2,var_y_m2",
+    "time_s,x_m,y_m,heading_rad,var_x_m2,cov_x_y_m2,var_y_m2,"
+    "cov_x_heading_m_rad,cov_y_heading_m_rad,var_heading_rad2"};
+constexpr std::size_t kWithSigmas = 2, kWithCovariance = 4;
+
+/// The time, then these controls or components of a detection.
+std::string header_of(std::span<const Quantity> quantities) {
+  std::string header = "time_s";
+  for (const Quantity quantity : quantities)
+    header.append(",").append(component_of(quantity).column);
+  return header;
+}
+
+Headers detection_headers(std::span<const Quantity> components) {
+  const std::string header = header_of(components);
+  return {header, header + ",identity"};
+}
+
+/// Whether reference `a` is read before `b`.
+bool is_read_before(const std::string& a, const std::string& b) {
+  return a != b && (a == kLeadingReference || (b != kLeadingReference && a < b));
+}
+
 void read_start(const fs::path& path, DriveLog& log) {
-  CsvRows rows(path, log_csv::kStart);
+  CsvRows rows(path, kStartHeader);
   const bool has_row = rows.next();
   if (has_row) {
     log.start_time = rows.number(0, "time");
@@ -46,7 +81,7 @@ std::vector<std::span<const Quantity>> known_controls() {
 void read_odometry(const fs::path& path, DriveLog& log) {
   const std::vector<std::span<const Quantity>> known = known_controls();
   std::vector<std::string> headers;
-  for (const auto& controls : known) headers.push_back(log_csv::odometry_header(controls));
+  for (const auto& controls : known) headers.push_back(header_of(controls));
   CsvRows rows(path, headers);
   log.controls = known[rows.header()];
   while (rows.next()) {
@@ -55,7 +90,6 @@ void read_odometry(const fs::path& path, DriveLog& log) {
       odometry.control[c] = rows.number(c + 1, component_of(log.controls[c]).name);
     }
   }
-  check_odometry(log.odometry, log.controls, path.string());
 }
 
 /// The identity in a field; nullopt if the field is empty.
@@ -90,8 +124,7 @@ bool is_empty_scan(const CsvRows& rows, std::size_t fields) {
 std::vector<std::string> known_detections() {
   std::vector<std::string> headers;
   for_each_sensor([&](const Sensor& sensor) {
-    std::ranges::copy(log_csv::detection_headers(components_of(sensor)),
-                      std::back_inserter(headers));
+    std::ranges::copy(detection_headers(components_of(sensor)), std::back_inserter(headers));
   });
   return headers;
 }
@@ -119,13 +152,12 @@ void read_scans(const fs::path& path, DriveLog& log) {
     if (nothing) continue;
     scans.back().detections.push_back(detection_in(rows, log.components, identified));
   }
-  check_scans(scans, path.string(), log.components);
 }
 
 /// Reads the landmarks. If there is a column of identities, every identity from 0 on must occur
 /// once.
 std::vector<Eigen::Vector2d> read_landmarks(const fs::path& path) {
-  CsvRows rows(path, log_csv::kLandmarks);
+  CsvRows rows(path, kLandmarkHeaders);
   std::vector<std::pair<std::int32_t, Eigen::Vector2d>> landmarks;
   while (rows.next()) {
     const auto next = static_cast<std::int32_t>(landmarks.size());
@@ -145,7 +177,6 @@ std::vector<Eigen::Vector2d> read_landmarks(const fs::path& path) {
     }
     places.push_back(place);
   }
-  check_landmarks(places, path.string());
   return places;
 }
 
@@ -154,8 +185,8 @@ std::vector<Eigen::Vector2d> read_landmarks(const fs::path& path) {
 std::string reference_in(const fs::path& file) {
   std::string stem = file.stem().string();
   if (file.extension() != ".csv" || stem == "landmarks") return {};
-  if (stem == log_csv::kLeading) return stem;
-  const std::string prefix = log_csv::kLeading + "_";
+  if (stem == kLeadingReference) return stem;
+  const std::string prefix = kLeadingReference + "_";
   if (stem.starts_with(prefix) && stem != prefix) return stem.substr(prefix.size());
   if (!stem.starts_with("reference") && !stem.starts_with("landmark")) return {};
   throw StudyError(file.string() + ": no file of a log (known: reference.csv, " +
@@ -169,7 +200,7 @@ std::vector<ReferencePath> read_references(const fs::path& folder) {
     const std::string name = reference_in(entry.path());
     if (!name.empty()) references.push_back(read_reference_csv(entry.path(), name));
   }
-  std::ranges::sort(references, log_csv::is_before, &ReferencePath::name);
+  std::ranges::sort(references, is_read_before, &ReferencePath::name);
   return references;
 }
 
@@ -184,7 +215,7 @@ DriveLog read_log_csv(const fs::path& folder) {
   if (fs::exists(folder / "landmarks.csv")) {
     log.landmarks = read_landmarks(folder / "landmarks.csv");
   }
-  check_log(log, folder.string(), LogForm::csv);
+  check_log(log, folder.string());
   return log;
 }
 
@@ -207,20 +238,20 @@ class Table {
     }
     text_ += rest + "\n";
   }
-  void save(const fs::path& path) const { write_text(path, text_); }
+  const std::string& text() const { return text_; }
 
  private:
   std::string text_;
 };
 
 Table start_table(double time, const Pose& start) {
-  Table table(log_csv::kStart[0]);
+  Table table(kStartHeader[0]);
   table.add({time, start.x, start.y, start.heading});
   return table;
 }
 
 Table odometry_table(const DriveLog& log) {
-  Table table(log_csv::odometry_header(log.controls));
+  Table table(header_of(log.controls));
   for (const auto& [time, control] : log.odometry) {
     std::array<double, 1 + Control::kMost> row{time};
     std::ranges::copy(control.values, row.begin() + 1);
@@ -242,7 +273,7 @@ std::string identity_field(const Detection& detection) {
 Table detection_table(const DriveLog& log) {
   const bool identified = is_identified(log);
   const std::size_t n = log.components.size();
-  Table table(log_csv::detection_headers(log.components)[identified ? 1 : 0]);
+  Table table(detection_headers(log.components)[identified ? 1 : 0]);
   for (const auto& [time, detections] : log.scans) {
     if (detections.empty()) table.add({time}, std::string(identified ? n + 1 : n, ','));
     for (const Detection& detection : detections) {
@@ -255,13 +286,13 @@ Table detection_table(const DriveLog& log) {
 }
 
 Table landmark_table(const std::vector<Eigen::Vector2d>& landmarks) {
-  Table table(log_csv::kLandmarks[0]);
+  Table table(kLandmarkHeaders[0]);
   for (const Eigen::Vector2d& place : landmarks) table.add({place.x(), place.y()});
   return table;
 }
 
 void check_order(const DriveLog& log, const std::string& place) {
-  if (std::ranges::is_sorted(log.references, log_csv::is_before, &ReferencePath::name)) return;
+  if (std::ranges::is_sorted(log.references, is_read_before, &ReferencePath::name)) return;
   throw StudyError(place + ": references are not in the order of their names (in which they will " +
                    "be read): rename them, or call the leading one 'reference'");
 }
@@ -284,18 +315,17 @@ void write_log_csv(const DriveLog& log, const fs::path& folder, const fs::path& 
   check_order(log, folder.string());
   make_folder(folder);
   make_folder(truth_folder);
-  start_table(log.start_time, log.start).save(folder / "start.csv");
-  odometry_table(log).save(folder / "odometry.csv");
-  detection_table(log).save(folder / "detections.csv");
+  write_text(folder / "start.csv", start_table(log.start_time, log.start).text());
+  write_text(folder / "odometry.csv", odometry_table(log).text());
+  write_text(folder / "detections.csv", detection_table(log).text());
   for (const ReferencePath& reference : log.references) {
-    write_text(truth_folder / log_csv::file_of_reference(reference.name), csv_of(reference));
+    write_text(truth_folder / file_of_reference(reference.name), csv_of(reference));
   }
-  if (!log.landmarks.empty()) landmark_table(log.landmarks).save(truth_folder / "landmarks.csv");
+  if (!log.landmarks.empty())
+    write_text(truth_folder / "landmarks.csv", landmark_table(log.landmarks).text());
 }
 
 namespace {
-
-using log_csv::ReferenceColumns;
 
 constexpr double kLeastDeviation = 1e-9;  // [m, rad]
 
@@ -345,43 +375,37 @@ Eigen::Matrix3d covariance_in(const CsvRows& rows, std::size_t first, int dimens
 }  // namespace
 
 ReferencePath read_reference_csv(const std::filesystem::path& path, const std::string& name) {
-  CsvRows rows(path, log_csv::kReference);
-  const auto columns = static_cast<ReferenceColumns>(rows.header());
-  const bool headed = log_csv::has_heading(columns);
+  CsvRows rows(path, kReferenceHeaders);
+  const bool headed = rows.header() % 2 == 1;
   const std::size_t behind = headed ? 4 : 3;  // the first field that is neither time nor pose
   ReferencePath reference{.name = name, .time = {}, .position = {}, .heading = {}};
   while (rows.next()) {
     reference.time.push_back(rows.number(0, "time"));
     reference.position.emplace_back(rows.number(1, "coordinate"), rows.number(2, "coordinate"));
     if (headed) reference.heading.push_back(rows.number(3, "heading"));
-    if (columns == ReferenceColumns::position || columns == ReferenceColumns::pose) continue;
-    const bool by_sigmas =
-        columns == ReferenceColumns::position_sigmas || columns == ReferenceColumns::pose_sigmas;
-    reference.covariance.push_back(by_sigmas
-                                       ? covariance_of_sigmas(rows, behind, reference.dimension())
-                                       : covariance_in(rows, behind, reference.dimension()));
+    const int dimension = reference.dimension();
+    if (rows.header() >= kWithCovariance) {
+      reference.covariance.push_back(covariance_in(rows, behind, dimension));
+    } else if (rows.header() >= kWithSigmas) {
+      reference.covariance.push_back(covariance_of_sigmas(rows, behind, dimension));
+    }
   }
-  check_reference(reference, path.string());
   return reference;
 }
 
 std::string csv_of(const ReferencePath& reference) {
   const bool headed = !reference.heading.empty(), known = !reference.covariance.empty();
-  std::string text = log_csv::header_of(known    ? headed ? ReferenceColumns::pose_covariance
-                                                          : ReferenceColumns::position_covariance
-                                        : headed ? ReferenceColumns::pose
-                                                 : ReferenceColumns::position) +
-                     "\n";
+  Table table(kReferenceHeaders[(known ? kWithCovariance : 0) + (headed ? 1 : 0)]);
   for (std::size_t f = 0; f < reference.time.size(); ++f) {
-    text += to_text(reference.time[f]) + "," + to_text(reference.position[f].x()) + "," +
-            to_text(reference.position[f].y());
-    if (headed) text += "," + to_text(reference.heading[f]);
+    std::vector<double> row = {reference.time[f], reference.position[f].x(),
+                               reference.position[f].y()};
+    if (headed) row.push_back(reference.heading[f]);
     for (int i = 0; known && i < reference.dimension(); ++i) {
-      for (int j = 0; j <= i; ++j) text += "," + to_text(reference.covariance[f](i, j));
+      for (int j = 0; j <= i; ++j) row.push_back(reference.covariance[f](i, j));
     }
-    text += "\n";
+    table.add(row);
   }
-  return text;
+  return table.text();
 }
 
 }  // namespace montecarta::experiments

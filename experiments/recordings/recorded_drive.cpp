@@ -172,7 +172,7 @@ LoggedScan scan_of(double time, Scan scan, Identities identities) {
 
 ReferencePath truth_path(const Itinerary& itinerary, const Drive& drive) {
   ReferencePath path{
-      .name = log_csv::kLeading, .time = itinerary.step_time, .position = {}, .heading = {}};
+      .name = kLeadingReference, .time = itinerary.step_time, .position = {}, .heading = {}};
   for (const Pose& pose : drive.truth) {
     path.position.emplace_back(pose.x, pose.y);
     path.heading.push_back(pose.heading);
