@@ -77,6 +77,31 @@ std::string wrapped(std::string_view text, std::size_t width, std::size_t hang) 
   return lines;
 }
 
+std::string listing(const std::vector<std::pair<std::string, std::string>>& items,
+                    std::size_t indent, std::size_t widest) {
+  constexpr std::size_t kNarrowestText = 16;
+  std::size_t longest = 0;
+  for (const auto& [name, description] : items) {
+    if (name.size() <= widest) longest = std::max(longest, name.size());
+  }
+  const std::size_t column = indent + longest + 2;
+  const std::size_t width = std::max(output_width(), column + kNarrowestText);
+  std::string text;
+  for (const auto& [name, description] : items) {
+    std::string line = std::string(indent, ' ') + name;
+    if (name.size() > longest || description.empty()) {
+      text += line + '\n';
+      line.clear();
+    }
+    std::istringstream lines(wrapped(description, width - column));
+    for (std::string part; std::getline(lines, part); line.clear()) {
+      line.resize(column, ' ');
+      text += line + part + '\n';
+    }
+  }
+  return text;
+}
+
 std::string first_sentence(const std::string& text) {
   for (std::size_t at = text.find(". "); at != text.npos; at = text.find(". ", at + 1)) {
     if (at + 2 < text.size() && std::isupper(static_cast<unsigned char>(text[at + 2])) != 0)

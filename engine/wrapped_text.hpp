@@ -5,6 +5,8 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 namespace montecarta::engine {
 
@@ -20,6 +22,11 @@ std::size_t output_width(int descriptor = 1);
 /// its leading spaces, and its further lines are indented by `hang` more. A line that fits is not
 /// changed. Every line ends in a line break.
 std::string wrapped(std::string_view text, std::size_t width, std::size_t hang = 0);
+
+/// Names with their descriptions beside them, wrapped to the width of the output. The description
+/// of a name with more than `widest` characters begins on the next line.
+std::string listing(const std::vector<std::pair<std::string, std::string>>& items,
+                    std::size_t indent = 2, std::size_t widest = output_width() * 2 / 5);
 
 /// `text` up to its first full stop before a capital letter, without the stop.
 std::string first_sentence(const std::string& text);

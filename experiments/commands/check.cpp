@@ -7,9 +7,9 @@
 #include "engine/records/posix_file.hpp"
 #include "engine/records/result_description.hpp"
 #include "engine/records/run_record.hpp"
+#include "engine/wrapped_text.hpp"
 #include "experiments/commands/arguments.hpp"
 #include "experiments/commands/commands.hpp"
-#include "experiments/commands/listing.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>

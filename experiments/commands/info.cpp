@@ -2,8 +2,8 @@
 #include "analysis/output/text_table.hpp"
 #include "engine/records/posix_file.hpp"
 #include "engine/records/seal.hpp"
+#include "engine/wrapped_text.hpp"
 #include "experiments/commands/commands.hpp"
-#include "experiments/commands/listing.hpp"
 #include "experiments/commands/stored_result.hpp"
 
 #include <algorithm>

@@ -4,7 +4,6 @@
 #include "engine/records/columns.hpp"
 #include "engine/wrapped_text.hpp"
 #include "experiments/commands/commands.hpp"
-#include "experiments/commands/listing.hpp"
 #include "experiments/external/external_filter.hpp"
 #include "experiments/files/files.hpp"
 #include "experiments/study/cell_spec.hpp"
