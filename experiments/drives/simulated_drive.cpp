@@ -28,15 +28,10 @@ std::uint32_t poisson(double mean, RngStream& draw) {
 }  // namespace
 
 SimulatedSensor::SimulatedSensor(const Scenario& scenario)
-    : sensor_(scenario.sensor),
+    : scenario_(scenario),
       sigma_(deviations_of(scenario.sensor, scenario)),
       view_(scenario.max_range, scenario.field_of_view, scenario.sensor.mounting,
-            scenario.min_range),
-      min_range_(scenario.min_range),
-      max_range_(scenario.max_range),
-      field_of_view_(scenario.field_of_view),
-      miss_probability_(scenario.miss_probability),
-      clutter_rate_(scenario.clutter_rate) {}
+            scenario.min_range) {}
 
 /// The detection of exact values, with noise if `noise` is given, limited to values that the sensor
 /// can measure.
@@ -44,7 +39,7 @@ Detection SimulatedSensor::noisy(const Eigen::Vector2d& exact, std::int32_t iden
                                  RngStream* noise) const {
   Detection detection{.values = {}, .identity = identity};
   std::size_t i = 0;
-  for (const Quantity quantity : components_of(sensor_)) {
+  for (const Quantity quantity : components_of(scenario_.sensor)) {
     const auto at = static_cast<Eigen::Index>(i);
     double value = exact(at);
     if (noise != nullptr) value += sigma_(at) * noise->normal();
@@ -56,9 +51,9 @@ Detection SimulatedSensor::noisy(const Eigen::Vector2d& exact, std::int32_t iden
 
 void SimulatedSensor::detect(const VisibleLandmark& observation, const StreamIdentity& place,
                              std::vector<Detection>& detections) const {
-  const bool missed =
-      miss_probability_ > 0.0 &&
-      RngStream(with(place, Draw::world_miss, observation.identity)).uniform() < miss_probability_;
+  const bool missed = scenario_.miss_probability > 0.0 &&
+                      RngStream(with(place, Draw::world_miss, observation.identity)).uniform() <
+                          scenario_.miss_probability;
   if (missed) return;
   RngStream draw(with(place, Draw::world_detection, observation.identity));
   detections.push_back(noisy(observation.detection, observation.identity, &draw));
@@ -66,13 +61,13 @@ void SimulatedSensor::detect(const VisibleLandmark& observation, const StreamIde
 
 void SimulatedSensor::add_clutter(const StreamIdentity& place,
                                   std::vector<Detection>& detections) const {
-  if (clutter_rate_ == 0.0) return;
+  if (scenario_.clutter_rate == 0.0) return;
   RngStream draw(with(place, Draw::world_clutter, 0));
-  for (std::uint32_t left = poisson(clutter_rate_, draw); left > 0; --left) {
-    const double share = draw.uniform(), inner = min_range_ / max_range_;
-    const double range = max_range_ * std::sqrt(share + (1.0 - share) * inner * inner);
-    const double bearing = field_of_view_ * (draw.uniform() - 0.5);
-    const Eigen::Vector2d exact = detection_of(sensor_, {range, bearing});
+  for (std::uint32_t left = poisson(scenario_.clutter_rate, draw); left > 0; --left) {
+    const double share = draw.uniform(), inner = scenario_.min_range / scenario_.max_range;
+    const double range = scenario_.max_range * std::sqrt(share + (1.0 - share) * inner * inner);
+    const double bearing = scenario_.field_of_view * (draw.uniform() - 0.5);
+    const Eigen::Vector2d exact = detection_of(scenario_.sensor, {range, bearing});
     detections.push_back(noisy(exact, Detection::kClutter, nullptr));
   }
 }
