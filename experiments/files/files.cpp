@@ -87,26 +87,11 @@ std::size_t columns_of(std::string_view row) {
   return 1 + static_cast<std::size_t>(std::ranges::count(row, ','));
 }
 
-/// `row` without white space around its fields.
-std::string tight(std::string_view row) {
-  constexpr std::size_t kLongestHeader = 200;
-  return joined(split(row.substr(0, kLongestHeader), ','), ",");
-}
-
 }  // namespace
 
 CsvRows::CsvRows(const std::filesystem::path& path, std::span<const std::string> headers)
     : path_(path.string()), text_(text_file(path)), rest_(text_) {
   read_header(headers);
-}
-
-CsvRows::CsvRows(const std::filesystem::path& path)
-    : path_(path.string()), text_(text_file(path)), rest_(text_) {
-  const std::optional<std::string_view> row = take_row();
-  if (!row) {
-    throw StudyError(path_ + ": empty (the first row names the columns): begin with their names");
-  }
-  header_text_ = joined(split(*row, ','), ",");
 }
 
 std::vector<std::string> CsvRows::columns() const { return split(header_text_, ','); }
@@ -137,17 +122,19 @@ std::optional<std::string_view> CsvRows::take_row() {
 }
 
 void CsvRows::read_header(std::span<const std::string> headers) {
+  const std::string remedy = headers.empty() ? "their names" : joined(headers, " or ");
   const std::optional<std::string_view> row = take_row();
   if (!row) {
-    throw StudyError(path_ + ": empty (the first row names the columns): begin with " +
-                     joined(headers, " or "));
+    throw StudyError(path_ + ": empty (the first row names the columns): begin with " + remedy);
   }
-  header_text_ = tight(*row);
+  constexpr std::size_t kLongestHeader = 200;  // of those that are known
+  const std::size_t length = headers.empty() ? row->size() : kLongestHeader;
+  header_text_ = joined(split(row->substr(0, length), ','), ",");
+  if (headers.empty()) return;
   const auto known = std::ranges::find(headers, header_text_);
   if (known == headers.end()) {
     throw StudyError(place() + ": '" + excerpt(*row) +
-                     "' is not the header (the first row names the columns): begin with " +
-                     joined(headers, " or "));
+                     "' is not the header (the first row names the columns): begin with " + remedy);
   }
   header_ = static_cast<std::size_t>(known - headers.begin());
 }

@@ -36,10 +36,9 @@ std::string text_file(const std::filesystem::path& path);
 /// first row names the columns. Errors (StudyError) name file and line.
 class CsvRows {
  public:
-  /// Reads the file and its header, which must be one of `headers`, e.g. "kind,x,y".
-  CsvRows(const std::filesystem::path& path, std::span<const std::string> headers);
-  /// Reads the file with any header, which columns() returns.
-  explicit CsvRows(const std::filesystem::path& path);
+  /// Reads the file and its header, which must be one of `headers`, e.g. "kind,x,y". Without
+  /// `headers` it may be any, which columns() returns.
+  explicit CsvRows(const std::filesystem::path& path, std::span<const std::string> headers = {});
 
   CsvRows(const CsvRows&) = delete;
   CsvRows& operator=(const CsvRows&) = delete;

@@ -331,21 +331,12 @@ std::size_t place_in(const StateRows& rows, double time, double tolerance, const
                    "innovations without an estimate");
 }
 
-/// Computes the NIS of a row from the innovation and its covariance.
+/// The NIS of a row from the innovation and its covariance.
 RowOfInnovations squares_of(const CsvRows& file, const EstimateFields& fields) {
-  const auto d = static_cast<Eigen::Index>(fields.shape.dimension());
-  Eigen::VectorXd innovation(d);
-  Eigen::MatrixXd S(d, d);
-  for (Eigen::Index i = 0; i < d; ++i) {
-    const auto row = static_cast<std::size_t>(i);
-    innovation(i) = file.number(fields.state[row], "number");
-    for (Eigen::Index j = 0; j < d; ++j) {
-      const auto element = static_cast<std::size_t>(i * d + j);
-      S(i, j) = file.number(fields.covariance[element], "number");
-    }
-  }
-  const analysis::Nees sample = analysis::imported_nees(innovation, S);
-  return {sample.value, static_cast<std::uint32_t>(sample.is_usable() ? sample.rank : d)};
+  const analysis::Nees sample = analysis::imported_nees(state_in(file, fields.state, fields.shape),
+                                                        covariance_in(file, fields));
+  const auto dimension = static_cast<std::uint32_t>(fields.shape.dimension());
+  return {sample.value, sample.is_usable() ? static_cast<std::uint32_t>(sample.rank) : dimension};
 }
 
 }  // namespace
@@ -374,15 +365,10 @@ StateRows read_estimates(const std::filesystem::path& path) {
 }
 
 std::size_t rows_in(const std::filesystem::path& path) {
-  const std::string text = text_file(path);
-  std::size_t lines = 0;
-  for (std::string_view rest = text; !rest.empty();) {
-    const std::size_t length = std::min(rest.find('\n'), rest.size());
-    const std::string_view line = rest.substr(0, length);
-    rest.remove_prefix(std::min(length + 1, rest.size()));
-    if (!trimmed(line.substr(0, line.find('#'))).empty()) ++lines;
-  }
-  return lines - std::min<std::size_t>(lines, 1);  // without the header
+  CsvRows file(path);
+  std::size_t rows = 0;
+  while (file.next()) ++rows;
+  return rows;
 }
 
 StateRows read_truth(const std::filesystem::path& path, const StateShape& shape) {

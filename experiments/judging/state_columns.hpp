@@ -79,7 +79,7 @@ struct StateRows {
 /// remedy if the file is empty or damaged, or a number is not finite.
 StateRows read_estimates(const std::filesystem::path& path);
 
-/// Number of rows of numbers in a file, estimated from its lines.
+/// Number of rows in a file.
 std::size_t rows_in(const std::filesystem::path& path);
 
 /// Reads a truth of the same state; other columns are ignored. Throws like read_estimates().
