@@ -11,21 +11,6 @@
 #include <cstdlib>
 
 namespace montecarta::engine {
-namespace {
-
-/// Spares the missing runs of a cell from `first` on, and returns their number.
-std::uint64_t spare_rest(std::size_t cell, std::uint64_t first, std::uint64_t last,
-                         ResultWriter& writer) {
-  std::uint64_t spared = 0;
-  for (std::uint64_t run = first; run < last; ++run) {
-    if (writer.status(cell, run) != RunStatus::missing) continue;
-    writer.spare(cell, run);
-    ++spared;
-  }
-  return spared;
-}
-
-}  // namespace
 
 std::vector<std::uint64_t> rounds_of(const StudyPlan& plan) {
   if (plan.is_enough) return rounds_of(plan.runs_here());
@@ -42,6 +27,23 @@ std::vector<std::uint64_t> rounds_of(std::uint64_t runs) {
   return rounds;
 }
 
+namespace {
+
+/// Spares the missing runs of a cell from `first` on, and returns their number.
+std::uint64_t spare_rest(std::size_t cell, std::uint64_t first, std::uint64_t last,
+                         ResultWriter& writer) {
+  std::uint64_t spared = 0;
+  for (std::uint64_t run = first; run < last; ++run) {
+    if (writer.status(cell, run) != RunStatus::missing) continue;
+    writer.spare(cell, run);
+    ++spared;
+  }
+  return spared;
+}
+
+/// Called between rounds, when the first `runs` runs of every cell have ended. Spares the later
+/// runs of each cell that has enough runs, and returns their number. If the study is killed
+/// meanwhile, a later session decides the same, because only the first `runs` runs count.
 std::uint64_t spare_what_is_enough(const StudyPlan& plan, std::uint64_t runs,
                                    const Parallel& parallel, ResultWriter& writer) {
   std::uint64_t spared = 0;
@@ -54,8 +56,6 @@ std::uint64_t spare_what_is_enough(const StudyPlan& plan, std::uint64_t runs,
   }
   return spared;
 }
-
-namespace {
 
 constexpr int kSomeRunsFailed = 3;
 constexpr int kCheckpoint = 85;

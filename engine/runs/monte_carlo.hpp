@@ -23,12 +23,6 @@ inline constexpr std::uint64_t kFirstRound = 32;
 /// The rounds of a study of `runs` runs that has cells that may stop early.
 std::vector<std::uint64_t> rounds_of(std::uint64_t runs);
 
-/// To be called between rounds, when the first `runs` runs of every cell have ended. Spares the
-/// later runs of each cell that has enough runs, and returns their number. If the study is killed
-/// meanwhile, a later session decides the same, because only the first `runs` runs count.
-std::uint64_t spare_what_is_enough(const StudyPlan& plan, std::uint64_t runs,
-                                   const Parallel& parallel, ResultWriter& writer);
-
 /// The result of a session of a study.
 struct RunOutcome {
   StopReason stopped = StopReason::complete;
