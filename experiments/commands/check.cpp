@@ -246,7 +246,7 @@ void print_details(const Study& study, const StudyPlan& plan) {
                          std::to_string(itinerary.scans()) + " scans, " +
                          duration_text(itinerary.step_time.back()) + " of driving, " +
                          std::to_string(itinerary.landmarks.size()) + " landmarks"}};
-  if (study.log != nullptr) {
+  if (!study.logs.empty()) {
     const std::string kind = study.settings.text("association", "kind");
     details.emplace_back("association", kind + (kind == "known" ? ", by the identities of the log"
                                                                 : ", by the filters themselves"));

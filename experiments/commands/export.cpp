@@ -48,7 +48,7 @@ std::string belief_text(const Study& study) {
 
 int export_command(const Arguments& arguments) {
   const Study study = study_of(arguments);
-  if (study.log != nullptr) {
+  if (!study.logs.empty()) {
     throw StudyError(arguments.operands().front() +
                      ": the drive of this study was recorded (it is the same in all runs, and a "
                      "CSV log already): give the folder of scenario.path to the other program");

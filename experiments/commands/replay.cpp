@@ -48,10 +48,9 @@ Study recording_everything(Study study, std::size_t cell, std::uint64_t run) {
   study.settings.replace("record", "columns", all_columns(study));
   study.settings.replace("record", "full_runs", "0");  // there is only one run
   study.settings.replace("record", "rate", "control");
-  if (study.own_logs.empty()) return study;
-  study.log = study.own_logs.at(run);  // a single drive allows recording every step
-  study.own_logs.clear();
-  study.settings.replace("scenario", "data_sha256", fingerprint_of(*study.log));
+  if (study.logs.size() < 2) return study;
+  study.logs = {study.logs.at(run)};  // a single drive allows recording every step
+  study.settings.replace("scenario", "data_sha256", fingerprint_of(*study.logs.front()));
   return study;
 }
 

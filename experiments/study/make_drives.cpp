@@ -158,9 +158,9 @@ RecordedDrive drive_of(const Settings& s, const DriveLog& log) {
 std::shared_ptr<const DriveSource> several_drives_of(const Study& study) {
   const std::string& place = study.settings.place("scenario", "path");
   std::vector<RecordedDrive> drives;
-  for (std::size_t k = 0; k < study.own_logs.size(); ++k) {
+  for (std::size_t k = 0; k < study.logs.size(); ++k) {
     try {
-      drives.push_back(drive_of(study.settings, *study.own_logs[k]));
+      drives.push_back(drive_of(study.settings, *study.logs[k]));
     } catch (const StudyError& error) {
       throw StudyError(place + ": drive " + std::to_string(k + 1) + ": " + error.what());
     }
@@ -204,15 +204,15 @@ ControlNoise control_noise_of(const Settings& s, const char* in) {
 }
 
 std::size_t identities_of(const Study& study) {
-  if (study.log == nullptr) return study.world.landmarks.size();
-  std::size_t most = identities_in(*study.log);
-  for (const auto& log : study.own_logs) most = std::max(most, identities_in(*log));
+  if (study.logs.empty()) return study.world.landmarks.size();
+  std::size_t most = 0;
+  for (const auto& log : study.logs) most = std::max(most, identities_in(*log));
   return most;
 }
 
 std::function<std::vector<Eigen::Vector2d>(std::uint64_t run)> own_landmarks_of(
     const Study& study, std::uint64_t seed) {
-  if (study.log != nullptr) return {};
+  if (!study.logs.empty()) return {};
   const Scenario scenario = scenario_of(study.settings);
   if (scenario.map == MapPlacement::fixed) return {};
   return RandomMap(study.world.landmarks, scenario.map_shift, seed);
@@ -220,13 +220,13 @@ std::function<std::vector<Eigen::Vector2d>(std::uint64_t run)> own_landmarks_of(
 
 std::shared_ptr<const DriveSource> drives_of(const Study& study, std::uint64_t seed) {
   const Settings& s = study.settings;
-  if (study.log == nullptr) {
+  if (study.logs.empty()) {
     refuse_other_controls(s, controls_of(vehicle_of(s, "scenario")));
     refuse_other_detections(s, components_of(sensor_of(s, "scenario")));
     return std::make_shared<SimulatedDrive>(study.world, scenario_of(s), seed);
   }
-  if (!study.own_logs.empty()) return several_drives_of(study);
-  return std::make_shared<RecordedDrive>(drive_of(s, *study.log));
+  if (study.logs.size() > 1) return several_drives_of(study);
+  return std::make_shared<RecordedDrive>(drive_of(s, *study.logs.front()));
 }
 
 }  // namespace montecarta::experiments

@@ -255,17 +255,14 @@ Study parse_study(const std::string& text, const std::string& name,
   const Settings settings(ini.entries, name);
   const bool controls_are_measured = settings.scenario_kind() == "simulated" &&
                                      settings.text("scenario", "noise") == "measured-control";
-  Study study{settings, read_cells(ini.entries, name, known_filters(), controls_are_measured),
-              {},       {},
-              {},       {}};
+  Study study{
+      settings, read_cells(ini.entries, name, known_filters(), controls_are_measured), {}, {}, {}};
   if (study.settings.scenario_kind() == "simulated") {
     study.world = world_of(ini, study.settings, folder);
     study.settings.replace("scenario", "world", study.world.name);
   } else {
     refuse_world(ini, study.settings);
-    study.own_logs = read_drives_of(study.settings, folder);
-    study.log = study.own_logs.front();
-    if (study.own_logs.size() == 1) study.own_logs.clear();
+    study.logs = read_drives_of(study.settings, folder);
     use_identities(study, name);
   }
   refuse_sensors(study.settings, study.cells);
@@ -291,7 +288,7 @@ bool is_silent(const std::string& key, const std::string& value) {
 std::string resolved_text(const Study& study) {
   std::string text;
   for (const std::string& section : study_sections()) {
-    if (section == "world" && study.log != nullptr) continue;
+    if (section == "world" && !study.logs.empty()) continue;
     text += "[" + section + "]\n";
     for (const auto& [key, value] : study.settings.section(section)) {
       if (!is_silent(key, value)) text += key + " = " + value + "\n";

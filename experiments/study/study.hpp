@@ -50,10 +50,9 @@ std::string in_words(const Until& until, std::uint64_t runs);
 struct Study {
   Settings settings;
   std::vector<CellSpec> cells;
-  World world;                          ///< of a simulation
-  std::shared_ptr<const DriveLog> log;  ///< nullptr in a simulation
-  /// {run} One drive for each run, the first of which is `log`; empty if all runs share a drive.
-  std::vector<std::shared_ptr<const DriveLog>> own_logs;
+  World world;  ///< of a simulation
+  /// Recorded drives: one for all runs, or one for each run; empty in a simulation.
+  std::vector<std::shared_ptr<const DriveLog>> logs;
   std::optional<Until> until;  ///< when a cell stops early
 };
 

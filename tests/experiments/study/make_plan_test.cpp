@@ -264,8 +264,8 @@ class RecordedStudy : public ::testing::Test {
 
 TEST_F(RecordedStudy, ReadsItsDriveBesideTheStudyAndFillsInWhatSuitsIt) {
   const Study study = read(kStudy);
-  ASSERT_NE(study.log, nullptr);
-  EXPECT_EQ(study.log->odometry.size(), log_.odometry.size());
+  ASSERT_EQ(study.logs.size(), 1U);
+  EXPECT_EQ(study.logs[0]->odometry.size(), log_.odometry.size());
   EXPECT_EQ(study.settings.text("association", "kind"), "nearest");
   EXPECT_EQ(study.settings.text("record", "rate"), "scan");
   EXPECT_EQ(study.settings.text("scenario", "path"), "log");
@@ -299,7 +299,7 @@ TEST_F(RecordedStudy, FindsFoldersWithCommasInTheirNames) {
   EXPECT_THAT(named("a,,a,"), testing::ElementsAre("a", "", "a", ""));
   EXPECT_THAT(named(""), testing::ElementsAre(""));
   std::filesystem::rename(folder_ / "drive", folder_ / "my,drive");
-  EXPECT_NE(read(kStudy, {"scenario.path=my,drive"}).log, nullptr);
+  EXPECT_EQ(read(kStudy, {"scenario.path=my,drive"}).logs.size(), 1U);
 }
 
 TEST_F(RecordedStudy, RefusesAnotherDriveThanItWasMadeWith) {
