@@ -16,17 +16,6 @@ namespace {
 /// The checked values of each option in a line.
 using Lists = std::map<std::string, std::vector<std::string>>;
 
-const FilterKind& known_filter(const std::string& name, const std::string& place,
-                               std::span<const FilterKind> filters) {
-  std::vector<std::string> known;
-  for (const FilterKind& filter : filters) {
-    if (filter.name == name) return filter;
-    known.push_back(filter.name);
-  }
-  throw StudyError(place + ": unknown filter '" + name +
-                   "' (see montecarta list filters): " + nearest_spelling(name, known));
-}
-
 const Parameter& known_option(const FilterKind& filter, const std::string& key,
                               const std::string& place) {
   std::vector<std::string> known{"label"};
@@ -77,15 +66,16 @@ void take_word(const std::string& word, const FilterKind& filter, CellSpec& cell
   }
 }
 
-/// Replaces every cell by one copy for each of `values`.
-template <class Take>
-void multiply(const std::vector<std::string>& values, const Take& take,
-              std::vector<CellSpec>& cells) {
+using Options = std::vector<std::pair<std::string, std::string>>;
+
+/// Replaces every cell by one copy for each of `values` of an option, which is added to a list.
+void multiply(const std::string& key, const std::vector<std::string>& values,
+              Options CellSpec::*list, std::vector<CellSpec>& cells) {
   std::vector<CellSpec> longer;
   for (const CellSpec& cell : cells) {
     for (const std::string& value : values) {
       longer.push_back(cell);
-      take(longer.back(), value);
+      (longer.back().*list).emplace_back(key, value);
     }
   }
   cells = std::move(longer);
@@ -102,18 +92,12 @@ std::vector<CellSpec> combinations(const CellSpec& line, const Lists& lists,
     const auto& fallback = has_own ? option.fallback_if_measured : option.fallback;
     return std::vector{checked_value(option, fallback.value_or(""), line.place)};
   };
-  for (const Parameter& option : line.filter->options) {
-    const auto take = [&](CellSpec& cell, const std::string& value) {
-      cell.options.emplace_back(option.key, value);
-    };
-    multiply(values_of(option), take, cells);
-  }
-  for (const Parameter& option : mismatch_options()) {
-    const auto take = [&](CellSpec& cell, const std::string& value) {
-      if (value != *option.fallback) cell.mismatch.emplace_back(option.key, value);
-    };
-    multiply(values_of(option), take, cells);
-  }
+  for (const Parameter& option : line.filter->options)
+    multiply(option.key, values_of(option), &CellSpec::options, cells);
+  for (const Parameter& option : mismatch_options())
+    multiply(option.key, values_of(option), &CellSpec::mismatch, cells);
+  for (CellSpec& cell : cells)
+    std::erase_if(cell.mismatch, [](const auto& factor) { return factor.second == "1"; });
   return cells;
 }
 
@@ -135,7 +119,9 @@ std::vector<CellSpec> read_line(const IniEntry& entry, std::span<const FilterKin
                      filters.front().name);
   }
   CellSpec line{.label = {},
-                .filter = &known_filter(words[0], entry.place, filters),
+                .filter = &item_called(words[0], filters, &FilterKind::name,
+                                       entry.place + ": unknown filter '" + words[0] +
+                                           "' (see montecarta list filters)"),
                 .options = {},
                 .distinction = {},
                 .place = entry.place};

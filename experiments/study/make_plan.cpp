@@ -144,18 +144,10 @@ std::vector<std::pair<std::string, std::string>> scenario_facts(const Settings& 
   return facts;
 }
 
-/// Throws StudyError if joint estimates are to be stored although no cell has them or they cannot
-/// be judged.
-void expect_joint_estimates(const Study& study) {
-  const std::string objection = objection_to_joint(study);
+/// Throws StudyError if a column is to be stored to which there is an objection.
+void refuse_column(const Study& study, const std::string& column, const std::string& objection) {
   if (objection.empty()) return;
-  throw StudyError(study.settings.place("record", "columns") + ": joint " + objection);
-}
-
-void expect_observability(const Study& study) {
-  const std::string objection = objection_to_observability(study);
-  if (objection.empty()) return;
-  throw StudyError(study.settings.place("record", "columns") + ": observability " + objection);
+  throw StudyError(study.settings.place("record", "columns") + ": " + column + " " + objection);
 }
 
 /// Throws StudyError if cells stop by their verdict but cannot have one.
@@ -246,8 +238,9 @@ StudyPlan make_plan(const Study& study, std::optional<RunRange> range, ExternalP
   plan.last_run = range ? range->last : plan.runs;
   for (const CellSpec& spec : study.cells) plan.cells.push_back(cell_of(spec, study, programs));
   plan.columns = columns_of(settings);
-  if (plan.columns.joint) expect_joint_estimates(study);
-  if (plan.columns.observability) expect_observability(study);
+  if (plan.columns.joint) refuse_column(study, "joint", objection_to_joint(study));
+  if (plan.columns.observability)
+    refuse_column(study, "observability", objection_to_observability(study));
   plan.drives = drives_of(study, plan.seed);
   if (study.until) plan.is_enough = rule_of(*study.until);
   plan.own_landmarks = own_landmarks_of(study, plan.seed);
@@ -275,11 +268,9 @@ fs::path folder_of(const Settings& settings, const std::string& path,
 void expect_reference(const Settings& settings, const DriveLog& log) {
   const std::string& name = settings.text(kScenario, "reference");
   if (name.empty()) return;
-  std::vector<std::string> known;
-  for (const ReferencePath& path : log.references) known.push_back(path.name);
-  if (std::ranges::find(known, name) != known.end()) return;
-  throw StudyError(settings.place(kScenario, "reference") + ": reference = " + name +
-                   " (the drive has none of that name): " + nearest_spelling(name, known));
+  item_called(name, log.references, &ReferencePath::name,
+              settings.place(kScenario, "reference") + ": reference = " + name +
+                  " (the drive has none of that name)");
 }
 
 void expect_same_drive(const Settings& settings, const std::string& expected,

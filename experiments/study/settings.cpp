@@ -7,55 +7,35 @@
 #include "engine/wrapped_text.hpp"
 #include "experiments/text/words.hpp"
 
-#include <boost/program_options/parsers.hpp>
-
 #include <algorithm>
 #include <limits>
+#include <ranges>
 #include <sstream>
 
 namespace montecarta::experiments {
-namespace {
 
-namespace po = boost::program_options;
-
-/// The places of the sections and entries of a text, which Program_options does not provide. The
-/// entries have no values yet.
-IniText index_of(const std::string& text, const std::string& name) {
-  IniText index;
+IniText read_ini(const std::string& text, const std::string& name) {
+  IniText ini;
   std::istringstream stream(text);
   std::string line;
   for (int number = 1; std::getline(stream, line); ++number) {
     const std::string_view content = trimmed(std::string_view(line).substr(0, line.find('#')));
     const std::string place = name + ":" + std::to_string(number);
     if (content.empty()) continue;
+    const std::size_t equals = std::min(content.find('='), content.size());
+    const std::string_view key = trimmed(content.substr(0, equals));
     if (content.front() == '[' && content.back() == ']') {
-      index.sections.push_back({std::string(content.substr(1, content.size() - 2)), place});
-    } else if (trimmed(content.substr(0, content.find('='))).empty() ||
-               content.find('=') == content.npos) {
+      ini.sections.push_back({std::string(content.substr(1, content.size() - 2)), place});
+    } else if (key.empty() || equals == content.size()) {
       throw StudyError(place + ": stray text '" + std::string(content) +
                        "' (a line is [section] or key = value): complete it, or put # before it");
-    } else if (index.sections.empty()) {
+    } else if (ini.sections.empty()) {
       throw StudyError(place + ": '" + std::string(content) +
                        "' stands before any section: put [study] above it");
     } else {
-      index.entries.push_back({index.sections.back().name, {}, {}, place});
+      ini.entries.push_back({ini.sections.back().name, std::string(key),
+                             std::string(trimmed(content.substr(equals + 1))), place});
     }
-  }
-  return index;
-}
-
-}  // namespace
-
-IniText read_ini(const std::string& text, const std::string& name) {
-  IniText ini = index_of(text, name);
-  std::istringstream stream(text);
-  const po::options_description anything;
-  const auto options = po::parse_config_file(stream, anything, true).options;
-  expect(options.size() == ini.entries.size(), "the INI parser and the index of lines disagree");
-  for (std::size_t i = 0; i < options.size(); ++i) {
-    IniEntry& entry = ini.entries[i];
-    entry.key = options[i].string_key.substr(entry.section.size() + 1);
-    entry.value = options[i].value.empty() ? "" : options[i].value.front();
   }
   return ini;
 }
@@ -107,9 +87,8 @@ std::string checked_text(const Parameter& option, std::string_view text, const s
 }
 
 void check_choice(const Parameter& option, const std::string& word, const std::string& place) {
-  if (std::ranges::find(option.choices, word) != option.choices.end()) return;
-  throw StudyError(place + ": " + option.key + " = " + word + " (" + demand_of(option) +
-                   " is needed): " + nearest_spelling(word, option.choices));
+  item_called(word, option.choices, std::identity(),
+              place + ": " + option.key + " = " + word + " (" + demand_of(option) + " is needed)");
 }
 
 /// Checks a list of choices, and returns it in the order of the table without repetitions.
@@ -190,14 +169,10 @@ std::string checked_value(const Parameter& option, std::string_view text,
 namespace {
 
 const Setting& known_setting(const IniEntry& entry) {
-  std::vector<std::string> known;
-  for (const Setting& setting : study_settings()) {
-    if (setting.section != entry.section) continue;
-    if (setting.key == entry.key) return setting;
-    known.push_back(setting.key);
-  }
-  throw StudyError(entry.place + ": unknown key " + entry.section + "." + entry.key +
-                   " (it would have no effect): " + nearest_spelling(entry.key, known));
+  const auto is_here = [&](const Setting& setting) { return setting.section == entry.section; };
+  return item_called(entry.key, study_settings() | std::views::filter(is_here), &Setting::key,
+                     entry.place + ": unknown key " + entry.section + "." + entry.key +
+                         " (it would have no effect)");
 }
 
 [[noreturn]] void throw_out_of_place(const Setting& setting, const std::string& kind,

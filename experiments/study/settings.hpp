@@ -69,8 +69,6 @@ std::string checked_value(const Parameter& option, std::string_view text, const 
 /// The values that an option allows, e.g. "a number from 0 to 1000 m".
 std::string demand_of(const Parameter& option);
 
-struct Setting;
-
 /// The values of all settings of study_settings(), checked and in canonical spelling.
 class Settings {
  public:

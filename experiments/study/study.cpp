@@ -20,23 +20,14 @@ namespace {
 
 constexpr const char* kProcessorTime = "cpu_seconds";
 
-std::vector<std::string> usable_scores() {
-  std::vector<std::string> names;
-  for (const Score& score : all_scores()) {
-    if (score.name != std::string(kProcessorTime)) names.emplace_back(score.name);
-  }
-  return names;
-}
-
 const Score* score_called(const std::string& name, const std::string& place) {
   if (name == kProcessorTime) {
     throw StudyError(place + ": until = " + name +
                      " < ... (processor time differs from run to run, and results must not depend "
                      "on it): choose another metric");
   }
-  if (const Score* score = find_score(name)) return score;
-  throw StudyError(place + ": until = " + name + " < ... (runs have no number of that name): " +
-                   nearest_spelling(name, usable_scores()));
+  return &item_called(name, all_scores(), &Score::name,
+                      place + ": until = " + name + " < ... (runs have no number of that name)");
 }
 
 /// Whether the verdict of a cell is known after `runs` runs. "Consistent" needs `least_runs`,
@@ -121,8 +112,6 @@ std::string in_words(const Until& until, std::uint64_t runs) {
 
 namespace {
 
-const std::array<std::string, 2> kPointKeys = {"waypoint", "landmark"};
-
 Eigen::Vector2d read_point(const IniEntry& entry) {
   const std::vector<std::string> parts = split(entry.value, ',');
   const auto x = to_number(parts.front());
@@ -151,14 +140,7 @@ bool has_inline_world(const IniText& ini) {
 World read_inline_world(const IniText& ini, const std::string& name, const std::string& place) {
   World world{.name = name, .waypoints = {}, .landmarks = {}};
   for (const IniEntry& entry : ini.entries) {
-    if (entry.section != "world") continue;
-    if (entry.key != kPointKeys[0] && entry.key != kPointKeys[1]) {
-      throw StudyError(
-          entry.place + ": unknown key world." + entry.key +
-          " (a world has waypoint and landmark): " + nearest_spelling(entry.key, kPointKeys));
-    }
-    if (entry.key == kPointKeys[0]) world.waypoint_places.push_back(entry.place);
-    (entry.key == kPointKeys[0] ? world.waypoints : world.landmarks).push_back(read_point(entry));
+    if (entry.section == "world") add_point(entry.key, read_point(entry), entry.place, world);
   }
   check_world(world, place);
   return world;
@@ -166,15 +148,15 @@ World read_inline_world(const IniText& ini, const std::string& name, const std::
 
 /// The lines below [world] that read back as exactly this world.
 std::string inline_world_text(const World& world) {
-  return lines_of(kPointKeys[0], world.waypoints) + lines_of(kPointKeys[1], world.landmarks);
+  return lines_of("waypoint", world.waypoints) + lines_of("landmark", world.landmarks);
 }
 
 void refuse_unknown_sections(const IniText& ini) {
   const std::vector<std::string> known = study_sections();
   for (const IniSection& section : ini.sections) {
-    if (std::ranges::find(known, section.name) != known.end()) continue;
-    throw StudyError(section.place + ": unknown section [" + section.name +
-                     "] (it would have no effect): " + nearest_spelling(section.name, known));
+    item_called(
+        section.name, known, std::identity(),
+        section.place + ": unknown section [" + section.name + "] (it would have no effect)");
   }
 }
 
@@ -199,22 +181,17 @@ IniEntry override_entry(const std::string& text) {
 /// Applies overrides, which replace entries of the file with the same key. Several overrides of one
 /// key are reported as an error later.
 void apply(std::span<const std::string> overrides, IniText& ini) {
-  const std::size_t in_file = ini.entries.size();
+  std::vector<IniEntry> entries;
   for (const std::string& text : overrides) {
-    const IniEntry entry = override_entry(text);
-    ini.sections.push_back({entry.section, entry.place});
-    ini.entries.push_back(entry);
+    entries.push_back(override_entry(text));
+    ini.sections.push_back({entries.back().section, entries.back().place});
   }
-  const auto overridden = [&](const IniEntry& old) {
-    return std::any_of(
-        ini.entries.begin() + static_cast<std::ptrdiff_t>(in_file), ini.entries.end(),
-        [&](const IniEntry& e) { return e.section == old.section && e.key == old.key; });
-  };
-  std::vector<IniEntry> kept;
-  for (std::size_t i = 0; i < ini.entries.size(); ++i) {
-    if (i >= in_file || !overridden(ini.entries[i])) kept.push_back(ini.entries[i]);
+  for (const IniEntry& entry : entries) {
+    std::erase_if(ini.entries, [&](const IniEntry& old) {
+      return old.section == entry.section && old.key == entry.key;
+    });
   }
-  ini.entries = std::move(kept);
+  ini.entries.insert(ini.entries.end(), entries.begin(), entries.end());
 }
 
 /// The world that is written in the study, otherwise the one that it names.

@@ -34,20 +34,17 @@ fs::path resolved_path(const std::string& name, const std::vector<fs::path>& fol
   return name;
 }
 
-const std::array<std::string, 2> kKinds = {"landmark", "waypoint"};
-
-void read_row(const CsvRows& rows, World& world) {
-  const std::string kind(rows.field(0));
-  if (kind != kKinds[0] && kind != kKinds[1]) {
-    throw StudyError(rows.place() + ": unknown kind '" + excerpt(kind) +
-                     "' (a row is a landmark or a waypoint): " + nearest_spelling(kind, kKinds));
-  }
-  auto& points = kind == kKinds[0] ? world.landmarks : world.waypoints;
-  if (kind == kKinds[1]) world.waypoint_places.push_back(rows.place());
-  points.emplace_back(rows.number(1, "coordinate"), rows.number(2, "coordinate"));
-}
-
 }  // namespace
+
+void add_point(std::string_view kind, const Eigen::Vector2d& point, const std::string& place,
+               World& world) {
+  static const std::array<std::string, 2> kinds = {"landmark", "waypoint"};
+  item_called(kind, kinds, std::identity(),
+              place + ": unknown kind '" + excerpt(kind) + "' (a world has landmark and waypoint)");
+  if (kind == kinds[0]) return world.landmarks.push_back(point);
+  world.waypoints.push_back(point);
+  world.waypoint_places.push_back(place);
+}
 
 void check_world(const World& world, const std::string& place) {
   if (world.waypoints.size() < 2) {
@@ -74,7 +71,10 @@ World read_world_file(const fs::path& path) {
   }
   World world{.name = path.stem().string(), .waypoints = {}, .landmarks = {}};
   CsvRows rows(path, std::array<std::string, 1>{"kind,x,y"});
-  while (rows.next()) read_row(rows, world);
+  while (rows.next()) {
+    add_point(rows.field(0), {rows.number(1, "coordinate"), rows.number(2, "coordinate")},
+              rows.place(), world);
+  }
   check_world(world, path.string());
   return world;
 }

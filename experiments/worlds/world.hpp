@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace montecarta::experiments {
@@ -20,6 +21,11 @@ struct World {
 
 /// Bound on coordinates [m]. A larger one is a mistake of units.
 inline constexpr double kFarthestCoordinate = 1e6;
+
+/// Adds a landmark or a waypoint, as `kind` says, to `world`. Throws StudyError that begins with
+/// `place`, e.g. "file:line", if it is neither.
+void add_point(std::string_view kind, const Eigen::Vector2d& point, const std::string& place,
+               World& world);
 
 /// Throws StudyError "place: problem (why): remedy" unless `world` has landmarks, at least two
 /// way-points, and valid coordinates.
