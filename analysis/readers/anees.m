@@ -9,6 +9,9 @@
 % their stored errors, of any dimension. Only functions that Octave and MATLAB both have.
 function anees(path)
   s = load_results(path);
+  if isfield(s, 'sums')
+    error('%s: has sums instead of runs: use montecarta analyze', path);
+  end
   labels = fieldnames(s.cells);
   for k = 1:numel(labels)
     cell = s.cells.(labels{k});

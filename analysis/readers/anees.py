@@ -102,6 +102,8 @@ def anees(cell, truth, scan_row):
 
 if __name__ == "__main__":
     results, arrays = montecarta.open(sys.argv[1]), montecarta.arrays(sys.argv[1])
+    if "sums" in arrays:
+        sys.exit(f"{sys.argv[1]}: has sums instead of runs: use montecarta analyze")
     for label in results.labels:
         cell = results[label] if sys.argv[2:] == ["--xarray"] else arrays["cells"][label]
         truth = None

@@ -20,6 +20,8 @@ Member = namedtuple("Member", "family name estimate p interval")  # interval(lev
 def errors_of(path, label):
     """Whitened and standardised errors {run, scan, component}, and the times of the scans [s]."""
     with h5py.File(path, "r") as file:
+        if "sums" in file:
+            sys.exit(f"{path}: has sums instead of runs: use montecarta analyze")
         cell, rows, times = file["cells"][label], file["scan_row"][:], file["scan"][:]
         is_several = cell.attrs["particles"] > 0 or "pose_mean_mixture" in cell
         if is_several or "error" in cell or "pose_covariance" not in cell:

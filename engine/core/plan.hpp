@@ -35,7 +35,15 @@ struct ColumnSelection {
   bool scans_only = false;       ///< record.rate = scan: rows of `time` only at scans
   /// record.full_runs: in_full() is stored of this number of runs, the first ones of the study.
   std::uint64_t full_runs = 0;
+  /// Sums over groups of kRunsOfAGroup runs are stored in place of their rows.
+  bool sums = false;
 };
+
+/// Consecutive runs of a study, by their numbers, that are summed up before anything else: groups
+/// begin at the multiples of this number.
+inline constexpr std::uint64_t kRunsOfAGroup = 4096;
+/// Number of first runs whose rows are stored beside sums, at least.
+inline constexpr std::uint64_t kRunsBesideSums = 16;
 
 /// The error of another program's estimate, which a file holds in place of our own columns.
 struct ImportedError {

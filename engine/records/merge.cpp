@@ -5,6 +5,7 @@
 #include "engine/records/open_result.hpp"
 #include "engine/records/posix_file.hpp"
 #include "engine/records/seal.hpp"
+#include "engine/records/sum_groups.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -350,7 +351,8 @@ void copy_runs(const std::vector<Shard>& shards, const std::vector<std::size_t>&
 MergeSummary merge_results(const fs::path& out, const std::vector<fs::path>& paths,
                            Existing existing) {
   expect_mergeable(out, paths, existing);
-  ResultDescription description;
+  ResultDescription description = describe_shard(paths.front());
+  if (description.sums) return merge_groups(out, paths, 0, description.study_runs, existing);
   const std::vector<Shard> shards = open_shards(paths, description);
   MergeSummary summary;
   summary.runs = description.study_runs;

@@ -44,13 +44,16 @@ void expect_room(const fs::path& path, double bytes) {
                  " are free: free space, choose another disk, or store fewer runs or columns");
 }
 
-PosixFile lay_out_new(const fs::path& path, const ResultDescription& description) {
+PosixFile lay_out_new(const fs::path& path, const ResultDescription& description,
+                      const std::function<void(const PosixFile&, const ResultSlabs&)>& fill) {
   PosixFile file(path, PosixFile::Mode::create);
   file.lock();
   try {
     expect_room(path, description.bytes());
     lay_out(path, description);
-    put_seal(file, written_later(find_slabs(path, description)));
+    const ResultSlabs slabs = find_slabs(path, description);
+    if (fill) fill(file, slabs);
+    put_seal(file, written_later(slabs));
     file.reserve();
     file.sync();
   } catch (...) {

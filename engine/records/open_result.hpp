@@ -6,6 +6,7 @@
 #include "engine/records/result_writer.hpp"
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,9 +31,11 @@ struct OpenResult {
 /// Throws RunError if less than `bytes` are free beside `path`.
 void expect_room(const std::filesystem::path& path, double bytes);
 
-/// Lays out an empty result at the temporary name `path` and returns it locked. Leaves no file if
-/// that fails.
-PosixFile lay_out_new(const std::filesystem::path& path, const ResultDescription& description);
+/// Lays out an empty result at the temporary name `path` and returns it locked. `fill` writes what
+/// the seal is to cover. Leaves no file if that fails.
+PosixFile lay_out_new(
+    const std::filesystem::path& path, const ResultDescription& description,
+    const std::function<void(const PosixFile&, const ResultSlabs&)>& fill = nullptr);
 
 /// Why `b`, which describes the file `path`, is not of the same study and layout as `a`, worded
 /// "place: problem (why): remedy"; nullopt if it is. Their runs may differ.

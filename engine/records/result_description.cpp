@@ -89,7 +89,11 @@ double ResultDescription::bytes() const {
     for (const Column& column : cell.full_columns)
       of_full_run += static_cast<double>(column.bytes());
   }
-  return of_run * static_cast<double>(runs.size()) +
+  double of_sums = 0.0;
+  if (sums) {
+    for (const std::uint64_t words : sums->words) of_sums += 8.0 * static_cast<double>(words);
+  }
+  return of_sums + of_run * static_cast<double>(runs.size()) +
          of_full_run * static_cast<double>(full_runs_here());
 }
 
@@ -208,6 +212,18 @@ StoredCell read_cell(const h5::Handle& cells, const std::string& label,
   return cell;
 }
 
+std::optional<SummedRuns> read_summed_runs(const h5::Handle& file,
+                                           const std::vector<StoredCell>& cells) {
+  if (!h5::has(file, format::kSums)) return std::nullopt;
+  const h5::Handle group = h5::open_group(file, format::kSums);
+  SummedRuns sums{h5::number(group, "first_run"), h5::number(group, "last_run"), {}};
+  for (const StoredCell& cell : cells) {
+    const h5::Shape shape = h5::shape(h5::open_dataset(group, cell.label));
+    sums.words.push_back(shape.size() == 1 ? shape.front() : 0);
+  }
+  return sums;
+}
+
 }  // namespace
 
 ResultDescription read_description(const h5::Handle& file, const std::filesystem::path& path) {
@@ -219,6 +235,7 @@ ResultDescription read_description(const h5::Handle& file, const std::filesystem
   const h5::Handle cells = h5::open_group(file, "cells");
   for (const std::string& label : h5::members(cells))
     result.cells.push_back(read_cell(cells, label, result));
+  result.sums = read_summed_runs(file, result.cells);
   check_description(result, path);
   return result;
 }
@@ -287,6 +304,15 @@ void check_runs(const ResultDescription& d, const Check& check) {
   check.expect(!d.runs.empty() && increases(d.runs), "its run numbers do not increase");
   check.expect(d.runs.back() < d.study_runs, "a run number is beyond the study's runs");
   check.expect(d.full_runs <= d.study_runs, "more runs are full than the study has");
+  if (!d.sums) return;
+  const auto is_border = [&](std::uint64_t run) {
+    return run % kRunsOfAGroup == 0 || run == d.study_runs;
+  };
+  check.expect(d.sums->first_run < d.sums->last_run && d.sums->last_run <= d.study_runs &&
+                   is_border(d.sums->first_run) && is_border(d.sums->last_run),
+               "its sums are of no groups of runs of the study");
+  check.expect(d.runs.front() == d.sums->first_run && d.runs.back() < d.sums->last_run,
+               "its runs are not the first of which it has sums");
 }
 
 void check_times(const ResultDescription& d, const Check& check) {

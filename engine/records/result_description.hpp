@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -40,6 +41,12 @@ struct OwnDrive {
   std::vector<ReferencePath> references;  ///< with the same names in all drives
 };
 
+/// Runs of which a file has sums over groups, in place of rows.
+struct SummedRuns {
+  std::uint64_t first_run = 0, last_run = 0;  ///< numbers [first_run, last_run)
+  std::vector<std::uint64_t> words;           ///< {cell} number of words of all groups
+};
+
 /// The contents of a result file except the numbers of its runs. Made from a plan it defines the
 /// layout of a file, read from a file it describes that layout.
 struct ResultDescription {
@@ -68,6 +75,7 @@ struct ResultDescription {
   TextPairs scenario;
   TextPairs provenance;
   std::vector<StoredCell> cells;
+  std::optional<SummedRuns> sums;  ///< then `runs` are the first of them
 
   /// Number of runs of this file that are stored in full, which are its first ones.
   std::size_t full_runs_here() const;

@@ -7,6 +7,7 @@
 #include "engine/records/result_layout.hpp"
 #include "engine/records/run_dataset.hpp"
 #include "engine/records/seal.hpp"
+#include "engine/records/sum_groups.hpp"
 #include "engine/visible_text.hpp"
 
 #include <algorithm>
@@ -166,6 +167,33 @@ double ResultFile::wall_seconds() const {
   double seconds = 0.0;
   h5::read(h5::open_dataset(contents_->file, "timing/wall_seconds"), Element::f64,
            std::as_writable_bytes(std::span(&seconds, 1)));
+  return seconds;
+}
+
+std::vector<std::uint64_t> ResultFile::fingerprints(const StoredCell& cell) const {
+  return contents_->per_run<std::uint64_t>("cells/" + cell.label + "/fingerprint", Element::u64);
+}
+
+std::vector<SumGroup> ResultFile::sum_groups(const StoredCell& cell) const {
+  if (!contents_->slabs) {
+    throw StudyError(path().string() +
+                     ": its sums cannot be checked (another program rewrote the file, which has "
+                     "lost its seal): use the file as montecarta wrote it");
+  }
+  const auto c = static_cast<std::size_t>(&cell - cells().data());
+  return find_groups(contents_->bytes, contents_->slabs->sums.at(c), *description().sums);
+}
+
+std::vector<std::uint64_t> ResultFile::sums(const SumGroup& group) const {
+  return read_sums(contents_->bytes, group);
+}
+
+std::vector<double> ResultFile::cpu_seconds_in_sums(const StoredCell& cell) const {
+  const SummedRuns& sums = *description().sums;
+  std::vector<double> seconds(sums.last_run - sums.first_run);
+  h5::read(h5::open_dataset(contents_->file,
+                            "timing/" + cell.label + "/" + std::string(format::kSumSeconds)),
+           Element::f64, std::as_writable_bytes(std::span(seconds)));
   return seconds;
 }
 

@@ -15,6 +15,8 @@
 
 namespace montecarta::engine {
 
+struct SumGroup;
+
 /// A result file that is opened for reading, the input of all analyses. Runs are read one by one,
 /// so that no more memory than the caller's buffer is needed. Any number of threads may call the
 /// members that take the index of a run. Opens finished files and unfinished work (OUT.h5.part).
@@ -61,6 +63,16 @@ class ResultFile {
   /// Processor time of each run's own thread over its steps [s]; NaN if missing.
   std::vector<double> cpu_seconds(const StoredCell& cell) const;
   double wall_seconds() const;  ///< [s] of all sessions
+  /// XXH3 of what is stored of each run.
+  std::vector<std::uint64_t> fingerprints(const StoredCell& cell) const;
+
+  /// Whether the file has sums over groups of runs. Then the members above are of the first runs.
+  bool has_sums() const { return description().sums.has_value(); }
+  std::vector<SumGroup> sum_groups(const StoredCell& cell) const;
+  /// The sums of one of them. Any number of threads may call it.
+  std::vector<std::uint64_t> sums(const SumGroup& group) const;
+  /// Processor time of every run in the sums [s].
+  std::vector<double> cpu_seconds_in_sums(const StoredCell& cell) const;
 
   /// Whether run index `i` has this column, because every run has it or this one is stored in full.
   bool holds(const StoredCell& cell, std::string_view column, std::size_t i) const;

@@ -99,6 +99,14 @@ ResultSlabs find_slabs(const std::filesystem::path& path, const ResultDescriptio
   slabs.wall_seconds = finder.find("timing/wall_seconds", sizeof(double), 1);
   slabs.sittings = finder.find("provenance/sittings", format::kSittingsBytes, 1);
   for (const StoredCell& cell : description.cells) slabs.cells.push_back(finder.find(cell));
+  for (std::size_t c = 0; description.sums && c < description.cells.size(); ++c) {
+    const SummedRuns& sums = *description.sums;
+    const std::string& label = description.cells[c].label;
+    slabs.sums.push_back(finder.find(std::string(format::kSums) + "/" + label,
+                                     sums.words[c] * sizeof(std::uint64_t), 1));
+    slabs.sum_seconds.push_back(finder.find("timing/" + label + "/" + format::kSumSeconds,
+                                            sizeof(double), sums.last_run - sums.first_run));
+  }
   return slabs;
 }
 
@@ -309,6 +317,27 @@ void add_cell(const h5::Handle& cells, const StoredCell& cell, const ResultDescr
   add_full(group, cell, result.full_runs_here(), scales);
 }
 
+void add_sums(const h5::Handle& file, const ResultDescription& result) {
+  const SummedRuns& sums = *result.sums;
+  const h5::Handle group = h5::create_group(file, format::kSums);
+  h5::put_numbers(group, "first_run", std::array{sums.first_run});
+  h5::put_numbers(group, "last_run", std::array{sums.last_run});
+  const auto add = [](const h5::Handle& parent, const std::string& name, Element element,
+                      std::uint64_t length, const char* axis, const Label& label) {
+    const h5::Handle dataset = h5::create_dataset(parent, name, element, {length});
+    put_label(dataset, label);
+    h5::put_text(dataset, "dimension_order", axis);
+  };
+  for (std::size_t c = 0; c < result.cells.size(); ++c) {
+    const std::string& label = result.cells[c].label;
+    add(group, label, Element::u64, sums.words[c], "word",
+        {"1", "sums over groups of runs, to be read by montecarta"});
+    add(h5::open_group(file, "timing/" + label), format::kSumSeconds, Element::f64,
+        sums.last_run - sums.first_run, "summed_run",
+        {"s", "processor time of the thread of every run in sums over its steps"});
+  }
+}
+
 void add_timing(const h5::Handle& file, const ResultDescription& result, const Scales& scales) {
   const h5::Handle group = h5::create_group(file, "timing");
   const double none = 0.0;
@@ -337,6 +366,7 @@ void lay_out(const std::filesystem::path& path, const ResultDescription& result)
     const h5::Handle cells = h5::create_group(file, "cells");
     for (const StoredCell& cell : result.cells) add_cell(cells, cell, result, scales);
     add_timing(file, result, scales);
+    if (result.sums) add_sums(file, result);
   });
   add_text(
       h5::open_group(file, "provenance"), "sittings", "", format::kSittingsBytes,

@@ -48,6 +48,8 @@ struct ResultSlabs {
   Slab wall_seconds;                ///< one value for all runs
   Slab sittings;                    ///< one text for all runs
   std::vector<CellSlabs> cells;
+  std::vector<Slab> sums;         ///< {cell} all groups; empty if the file has no sums
+  std::vector<Slab> sum_seconds;  ///< {cell} processor time of every run in them [s]
 };
 
 /// Finds the slabs of the file at `path`, described by `description`. Throws StudyError if a
@@ -98,8 +100,11 @@ void add_index_scale(const h5::Handle& parent, const std::string& name, std::siz
 namespace format {
 inline constexpr std::string_view kFiletype = "montecarta-results";
 inline constexpr std::uint64_t kMajor = 1;           ///< increased when a meaning changes
-inline constexpr std::uint64_t kMinor = 9;           ///< increased when something is added
+inline constexpr std::uint64_t kMinor = 10;          ///< increased when something is added
 inline constexpr std::size_t kSittingsBytes = 4096;  ///< size of the log of resumptions
+inline constexpr const char* kSums = "sums";         ///< group of the sums over groups of runs
+/// Dataset in the timing of a cell: of every run in sums.
+inline constexpr const char* kSumSeconds = "sums_cpu_seconds";
 inline constexpr const char* kFull = "full";  ///< group of a cell for the columns of full runs only
 inline constexpr const char* kFullRun = "full_run";    ///< first axis of those columns
 inline constexpr const char* kFullRuns = "full_runs";  ///< attribute: their number in the study

@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/records/sum_groups.hpp"
+
+#include "engine/errors.hpp"
+#include "engine/records/open_result.hpp"
+#include "engine/records/seal.hpp"
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <numeric>
+#include <optional>
+
+namespace montecarta::engine {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t kWordBytes = sizeof(std::uint64_t);
+
+[[noreturn]] void refuse_sums(const fs::path& path) {
+  throw StudyError(path.string() +
+                   ": damaged (its sums are not those of its groups of runs): take a copy that is "
+                   "whole, or run the study again");
+}
+
+std::vector<std::uint64_t> read_words(const PosixFile& file, std::uint64_t offset,
+                                      std::uint64_t count) {
+  std::vector<std::uint64_t> words(count);
+  file.read_at(offset, std::as_writable_bytes(std::span(words)));
+  return words;
+}
+
+SumGroup read_head(const PosixFile& file, std::uint64_t offset) {
+  const auto words = read_words(file, offset, kGroupHeadWords);
+  return {words[0], words[1], words[2], words[3], words[4], words[5], offset};
+}
+
+std::array<std::uint64_t, kGroupHeadWords> head_words(const SumGroup& group) {
+  return {group.first_run, group.runs, group.complete, group.failed, group.layout, group.words};
+}
+
+/// The first run behind the group that begins at `run`.
+std::uint64_t end_of_group(std::uint64_t run, const SummedRuns& runs) {
+  return std::min(run + kRunsOfAGroup, runs.last_run);
+}
+
+}  // namespace
+
+std::vector<SumGroup> find_groups(const PosixFile& file, const Slab& sums, const SummedRuns& runs) {
+  std::vector<SumGroup> groups;
+  std::uint64_t left = sums.run_bytes / kWordBytes, offset = sums.offset;
+  for (std::uint64_t run = runs.first_run; run < runs.last_run; run = end_of_group(run, runs)) {
+    if (left < kGroupHeadWords) refuse_sums(file.path());
+    const SumGroup group = read_head(file, offset);
+    left -= kGroupHeadWords;
+    const std::uint64_t count = end_of_group(run, runs) - run;
+    const bool is_next = group.first_run == run && group.runs == count && group.complete <= count &&
+                         group.failed <= count - group.complete;
+    if (!is_next || group.words > left) refuse_sums(file.path());
+    left -= group.words;
+    offset += (kGroupHeadWords + group.words) * kWordBytes;
+    groups.push_back(group);
+  }
+  if (left != 0) refuse_sums(file.path());
+  return groups;
+}
+
+std::vector<std::uint64_t> read_sums(const PosixFile& file, const SumGroup& group) {
+  return read_words(file, group.offset + kGroupHeadWords * kWordBytes, group.words);
+}
+
+namespace {
+
+/// A file with all or more of the first runs that a result with sums has.
+struct FirstRuns {
+  const PosixFile& file;
+  const ResultSlabs& slabs;
+};
+
+void copy_first_runs(const FirstRuns& from, const ResultDescription& description,
+                     const PosixFile& to, const ResultSlabs& slabs) {
+  std::vector<std::byte> buffer;
+  for (std::size_t i = 0; i < description.runs.size(); ++i) {
+    bool is_whole = truth_is_whole(from.file, from.slabs, i, buffer);
+    for (const CellSlabs& cell : from.slabs.cells)
+      is_whole = is_whole && run_is_whole(from.file, cell, i, buffer);
+    if (!is_whole) {
+      throw StudyError(from.file.path().string() + ": run " + std::to_string(description.runs[i]) +
+                       " is damaged (its bytes do not fit its fingerprint): compute it anew");
+    }
+    copy_truth(from.file, from.slabs, to, slabs, i);
+    for (std::size_t c = 0; c < description.cells.size(); ++c)
+      copy_cell(from.file, from.slabs.cells[c], to, slabs.cells[c], i);
+  }
+}
+
+/// The description of a result with sums, from one that has its first runs and perhaps more.
+ResultDescription with_sums(ResultDescription description, SummedRuns sums) {
+  const std::uint64_t kept = std::max(kRunsBesideSums, description.full_runs);
+  description.runs.resize(std::min<std::uint64_t>(kept, sums.last_run - sums.first_run));
+  std::iota(description.runs.begin(), description.runs.end(), sums.first_run);
+  description.sums = std::move(sums);
+  return description;
+}
+
+/// Lays out a result under a temporary name, fills it and gives it its name.
+std::uint64_t write_result(const fs::path& out, const ResultDescription& description,
+                           const std::function<void(const PosixFile&, const ResultSlabs&)>& fill,
+                           PosixFile::Target target) {
+  fs::path temporary = out;
+  temporary += ".new";
+  PosixFile file = lay_out_new(temporary, description, fill);
+  file.rename(out, target);
+  return file.size();
+}
+
+void write_seconds(const PosixFile& file, const ResultSlabs& slabs, double seconds) {
+  file.write_at(slabs.wall_seconds.offset, std::as_bytes(std::span(&seconds, 1)));
+}
+
+}  // namespace
+
+void write_group(const fs::path& out, const fs::path& rows, std::span<const NewGroup> cells) {
+  const ResultDescription all = describe_shard(rows);
+  const Shard shard = make_shard(rows, all);
+  SummedRuns sums{all.runs.front(), all.runs.back() + 1, {}};
+  for (const NewGroup& cell : cells) sums.words.push_back(kGroupHeadWords + cell.sums.size());
+  const ResultDescription description = with_sums(all, std::move(sums));
+  const PosixFile from(rows, PosixFile::Mode::read);
+  write_result(
+      out, description,
+      [&](const PosixFile& file, const ResultSlabs& slabs) {
+        copy_first_runs({from, shard.slabs}, description, file, slabs);
+        for (std::size_t c = 0; c < cells.size(); ++c) {
+          const auto head = head_words(cells[c].head);
+          file.write_at(slabs.sums[c].offset, std::as_bytes(std::span(head)));
+          file.write_at(slabs.sums[c].offset + kGroupHeadWords * kWordBytes,
+                        std::as_bytes(std::span(cells[c].sums)));
+          file.write_at(slabs.sum_seconds[c].offset,
+                        std::as_bytes(std::span(cells[c].cpu_seconds)));
+        }
+        write_seconds(file, slabs, shard.wall_seconds);
+      },
+      PosixFile::Target::replace);
+}
+
+namespace {
+
+/// A result with sums that others are made of.
+struct SumShard {
+  ResultDescription description;
+  ResultSlabs slabs;
+  PosixFile file;
+  std::vector<std::vector<SumGroup>> groups;  ///< {cell}
+  double seconds = 0.0;
+
+  explicit SumShard(const fs::path& path)
+      : description(describe_shard(path)), file(path, PosixFile::Mode::read) {
+    if (!description.sums)
+      throw StudyError(path.string() + ": has no sums: give shards of one study");
+    if (check_seal(path) != Seal::holds) refuse_sums(path);
+    slabs = find_slabs(path, description);
+    for (const Slab& sums : slabs.sums)
+      groups.push_back(find_groups(file, sums, *description.sums));
+    file.read_at(slabs.wall_seconds.offset, std::as_writable_bytes(std::span(&seconds, 1)));
+  }
+};
+
+using SumShards = std::vector<std::unique_ptr<SumShard>>;
+
+SumShards open_sum_shards(const std::vector<fs::path>& paths) {
+  SumShards shards;
+  for (const fs::path& path : paths) {
+    shards.push_back(std::make_unique<SumShard>(path));
+    const auto different =
+        difference(shards.front()->description, shards.back()->description, path);
+    if (different) throw StudyError(*different);
+  }
+  return shards;
+}
+
+/// Throws StudyError unless the group `g` of `a` and `h` of `b`, which are of the same runs, are
+/// equal in all cells.
+void expect_equal_groups(const SumShard& a, std::size_t g, const SumShard& b, std::size_t h) {
+  for (std::size_t c = 0; c < a.groups.size(); ++c) {
+    const SumGroup &left = a.groups[c][g], &right = b.groups[c][h];
+    if (left.words == right.words && head_words(left) == head_words(right) &&
+        read_sums(a.file, left) == read_sums(b.file, right))
+      continue;
+    throw StudyError(b.file.path().string() + ": the sums from run " +
+                     std::to_string(right.first_run) + " on differ from those in " +
+                     a.file.path().string() +
+                     " (made from other sources, by another compiler or C library; 'montecarta "
+                     "info' tells): leave one of them out");
+  }
+}
+
+/// Where the sums over a group are.
+struct Source {
+  const SumShard* shard = nullptr;
+  std::size_t group = 0;
+};
+
+/// {group from first_run on} Sources without a shard are missing.
+std::vector<Source> sources_of(const SumShards& shards, std::uint64_t first_run,
+                               std::uint64_t last_run, MergeSummary& summary) {
+  std::vector<Source> sources((last_run - first_run + kRunsOfAGroup - 1) / kRunsOfAGroup);
+  for (const auto& shard : shards) {
+    for (std::size_t g = 0; g < shard->groups.front().size(); ++g) {
+      const SumGroup& group = shard->groups.front()[g];
+      if (group.first_run < first_run || group.first_run >= last_run) continue;
+      Source& source = sources[(group.first_run - first_run) / kRunsOfAGroup];
+      if (source.shard != nullptr) {
+        expect_equal_groups(*source.shard, source.group, *shard, g);
+        summary.overlapping += group.runs;
+      } else {
+        source = {shard.get(), g};
+      }
+    }
+  }
+  return sources;
+}
+
+void expect_all_groups(const std::vector<Source>& sources, std::uint64_t first_run,
+                       std::uint64_t last_run, const fs::path& shard) {
+  std::string missing;
+  for (std::size_t k = 0; k < sources.size(); ++k) {
+    if (sources[k].shard != nullptr) continue;
+    const std::uint64_t begin = first_run + k * kRunsOfAGroup;
+    missing += "\n  montecarta run study.ini -o missing_" + std::to_string(k) + ".h5 --runs " +
+               std::to_string(begin) + ":" +
+               std::to_string(std::min(begin + kRunsOfAGroup, last_run));
+  }
+  if (missing.empty()) return;
+  throw StudyError(
+      "merge: runs are in none of the shards (nothing was written): compute them, then merge "
+      "again:\n  montecarta info " +
+      shard.string() + " --text > study.ini" + missing);
+}
+
+/// Copies the processor times of the runs of one group of cell `c`.
+void copy_seconds(const Source& source, std::size_t c, std::uint64_t first_run,
+                  const PosixFile& file, const ResultSlabs& slabs) {
+  const SumGroup& group = source.shard->groups[c][source.group];
+  const std::uint64_t here = group.first_run - source.shard->description.sums->first_run;
+  file.copy_at(slabs.sum_seconds[c].at(group.first_run - first_run), source.shard->file,
+               source.shard->slabs.sum_seconds[c].at(here), group.runs * sizeof(double));
+}
+
+/// All groups of a new file, one behind the other.
+SummedRuns summed_runs(const std::vector<Source>& sources, std::uint64_t first_run,
+                       std::uint64_t last_run, MergeSummary& summary) {
+  SummedRuns sums{first_run, last_run, std::vector<std::uint64_t>(summary.cells)};
+  for (const Source& source : sources) {
+    for (std::size_t c = 0; c < summary.cells; ++c) {
+      const SumGroup& group = source.shard->groups[c][source.group];
+      sums.words[c] += kGroupHeadWords + group.words;
+      summary.failed += group.failed;
+    }
+  }
+  return sums;
+}
+
+void copy_groups(const std::vector<Source>& sources, std::size_t c, std::uint64_t first_run,
+                 const PosixFile& file, const ResultSlabs& slabs) {
+  std::uint64_t offset = slabs.sums[c].offset;
+  for (const Source& source : sources) {
+    const SumGroup& group = source.shard->groups[c][source.group];
+    const std::uint64_t bytes = (kGroupHeadWords + group.words) * kWordBytes;
+    file.copy_at(offset, source.shard->file, group.offset, bytes);
+    offset += bytes;
+    copy_seconds(source, c, first_run, file, slabs);
+  }
+}
+
+}  // namespace
+
+MergeSummary merge_groups(const fs::path& out, const std::vector<fs::path>& paths,
+                          std::uint64_t first_run, std::uint64_t last_run, Existing existing) {
+  const SumShards shards = open_sum_shards(paths);
+  MergeSummary summary{.runs = last_run - first_run, .notes = {}};
+  const std::vector<Source> sources = sources_of(shards, first_run, last_run, summary);
+  expect_all_groups(sources, first_run, last_run, paths.front());
+  const SumShard& first = *sources.front().shard;
+  summary.cells = first.description.cells.size();
+  const ResultDescription description =
+      with_sums(first.description, summed_runs(sources, first_run, last_run, summary));
+  double seconds = 0.0;
+  for (const auto& shard : shards) seconds += shard->seconds;
+  const auto fill = [&](const PosixFile& file, const ResultSlabs& slabs) {
+    copy_first_runs({first.file, first.slabs}, description, file, slabs);
+    for (std::size_t c = 0; c < summary.cells; ++c) copy_groups(sources, c, first_run, file, slabs);
+    write_seconds(file, slabs, seconds);
+  };
+  summary.bytes = write_result(
+      out, description, fill,
+      existing == Existing::replace ? PosixFile::Target::replace : PosixFile::Target::keep);
+  return summary;
+}
+
+}  // namespace montecarta::engine
