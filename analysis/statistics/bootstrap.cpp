@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::size_t kMostReplicates = 2000, kFewestReplicates = 400;
 constexpr std::size_t kMostDraws = 20'000'000;
+constexpr std::size_t kMostRuns = 20'000;
 
 double normal_share(double z) { return boost::math::cdf(boost::math::normal(), z); }
 
@@ -53,6 +54,16 @@ Interval accelerated_interval(std::vector<double>& means, const SampleShape& sha
   };
   const double lower = end(-deviate);
   return {lower, end(deviate)};
+}
+
+/// Student's interval of the mean; NaN if a value is not finite.
+Interval t_interval(const std::vector<double>& values, double level) {
+  SummaryOf sums;
+  for (const double value : values) sums.add(value);
+  const Summary summary = sums.result();
+  const double half = t_quantile(values.size(), level) * summary.standard_error();
+  if (!std::isfinite(half)) return {kNaN, kNaN};
+  return {summary.mean - half, summary.mean + half};
 }
 
 bool all_finite(std::span<const double> values) {
@@ -94,6 +105,12 @@ std::vector<Interval> bootstrap_means(std::span<const std::vector<double>> colum
   std::vector<Interval> intervals(columns.size(), {kNaN, kNaN});
   const std::size_t runs = columns.empty() ? 0 : columns.front().size();
   if (runs < 2) return intervals;
+  if (runs > kMostRuns) {
+    std::ranges::transform(columns, intervals.begin(), [&](const std::vector<double>& column) {
+      return t_interval(column, level);
+    });
+    return intervals;
+  }
   const std::size_t replicates = bootstrap_replicates(runs);
   std::vector<std::size_t> known;
   for (std::size_t c = 0; c < columns.size(); ++c) {

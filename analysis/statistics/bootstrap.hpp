@@ -30,8 +30,9 @@ void draw_runs(std::size_t runs, std::size_t b, std::vector<std::uint32_t>& draw
 
 /// Interval of the mean over infinitely many runs at `level`, given one value for each run.
 /// Bootstrap over runs, bias-corrected and accelerated (BCa; Efron 1987), with tails widened as
-/// Student's t is wider than the normal (Hesterberg 2015), so that it holds from ten runs on. NaN
-/// if a value is not finite or there are fewer than two.
+/// Student's t is wider than the normal (Hesterberg 2015), so that it holds from ten runs on. Of
+/// more than 20,000 runs it is Student's interval, which is the same by then. NaN if a value is not
+/// finite or there are fewer than two.
 Interval bootstrap_mean(std::span<const double> values, double level);
 
 /// The same for several columns {run} of equal length, which share their draws.

@@ -3,6 +3,7 @@
 
 #include "analysis/metrics/survival.hpp"
 #include "analysis/statistics/paired_tests.hpp"
+#include "analysis/statistics/spread.hpp"
 #include "engine/random/stream.hpp"
 #include "tests/doubles/matchers.hpp"
 
@@ -130,6 +131,23 @@ TEST(Bootstrap, SaysNothingOfTooLittle) {
   EXPECT_TRUE(std::isnan(bootstrap_mean(std::vector<double>{1.0, infinite, 2.0}, 0.95).lower));
   const double most = std::numeric_limits<double>::max();
   EXPECT_TRUE(std::isnan(bootstrap_mean(std::vector<double>{most, 1.0, most}, 0.95).lower));
+}
+
+TEST(Bootstrap, OfManyRunsIsStudentsInterval) {
+  std::vector<double> values = exponentials(1, 20'000);
+  const Interval drawn = bootstrap_mean(values, 0.95);
+  values.push_back(1.0);
+  const Interval found = bootstrap_mean(values, 0.95);
+  SummaryOf sums;
+  for (const double value : values) sums.add(value);
+  const Summary all = sums.result();
+  const double half = t_quantile(values.size(), 0.95) * all.standard_error();
+  EXPECT_DOUBLE_EQ(found.lower, all.mean - half);
+  EXPECT_DOUBLE_EQ(found.upper, all.mean + half);
+  EXPECT_NEAR(found.lower, drawn.lower, 0.15 * half);  // of 1000 replicates
+  EXPECT_NEAR(found.upper, drawn.upper, 0.15 * half);
+  values.front() = std::numeric_limits<double>::infinity();
+  EXPECT_TRUE(std::isnan(bootstrap_mean(values, 0.95).lower));
 }
 
 TEST(Bootstrap, OfEqualValuesIsThatValue) {
