@@ -28,6 +28,11 @@ struct RunPits {
   std::array<double, kQuarters> nees{};      ///< of the leading NEES, by its chi-square law
   /// Which of them are stored.
   bool has_pose = false, has_rank = false, has_landmark = false, has_nees = false;
+  static constexpr auto members() {
+    using Pits = RunPits;
+    return std::tuple(&Pits::pose, &Pits::rank, &Pits::landmark, &Pits::nees, &Pits::has_pose,
+                      &Pits::has_rank, &Pits::has_landmark, &Pits::has_nees);
+  }
 };
 
 /// The transforms of errors in run number `run` with `particles` (0: none). `landmarks` [m] are the

@@ -71,6 +71,30 @@ void CellSums::merge(const CellSums& next) {
   for (std::size_t k = 0; k < metrics_.size(); ++k) metrics_[k]->merge(*next.metrics_[k]);
 }
 
+void CellSums::write(SumWriter& words) const {
+  ScoreTable scores = scores_;
+  scores.put("cpu_seconds", std::vector<double>(scores.runs(), kNaN));
+  words.put(scores);
+  words.put(over_time_);
+  for (const auto& metric : metrics_) metric->write(words);
+}
+
+void CellSums::read(SumReader& words) {
+  words.get(scores_);
+  words.get(over_time_);
+  for (const auto& metric : metrics_) metric->read(words);
+}
+
+std::string CellSums::layout() const {
+  std::string text;
+  for (const Score& score : all_scores()) text += std::string(score.name) + ',';
+  SumLayout<ScoreTable>::add(text);
+  for (const ScanSeries& series : all_scan_series()) text += std::string(series.name) + ',';
+  SumLayout<MeanOverTime>::add(text);
+  for (const auto& metric : metrics_) metric->add_layout(text);
+  return text;
+}
+
 void CellSums::put_series(CellAnalysis& cell) const {
   for (std::size_t k = 0; k < over_time_.size(); ++k) {
     if (over_time_[k].empty()) continue;
@@ -86,7 +110,7 @@ void CellSums::put_series(CellAnalysis& cell) const {
 void CellSums::put(CellAnalysis& cell) {
   cell.complete = scores_.runs();
   put_series(cell);
-  cell.scores = scores_;
+  cell.scores = std::move(scores_);
   for (const auto& metric : metrics_) metric->put(cell);
   put_score_intervals(cell, level_);
 }
@@ -96,15 +120,27 @@ namespace {
 struct RunBlock {
   std::size_t cell;
   std::span<const std::size_t> runs;
+  bool ends_group;
 };
+
+/// The number of the first runs that are of one block.
+std::size_t runs_of_block(std::span<const std::uint64_t> numbers) {
+  const std::uint64_t end = (numbers.front() / engine::kRunsOfAGroup + 1) * engine::kRunsOfAGroup;
+  const auto of_group = std::ranges::lower_bound(numbers, end) - numbers.begin();
+  return std::min(kRunsOfABlock, static_cast<std::size_t>(of_group));
+}
 
 std::vector<RunBlock> run_blocks_of(std::span<const CellRuns> cells) {
   std::vector<RunBlock> blocks;
   for (std::size_t c = 0; c < cells.size(); ++c) {
+    auto numbers = cells[c].numbers;
     for (auto left = cells[c].runs; !left.empty();) {
-      const std::size_t runs = std::min(kRunsOfABlock, left.size());
-      blocks.push_back({c, left.first(runs)});
+      const std::size_t runs = runs_of_block(numbers);
+      const bool ends_group = runs == left.size() || numbers[runs] / engine::kRunsOfAGroup !=
+                                                         numbers.front() / engine::kRunsOfAGroup;
+      blocks.push_back({c, left.first(runs), ends_group});
       left = left.subspan(runs);
+      numbers = numbers.subspan(runs);
     }
   }
   return blocks;
@@ -129,10 +165,16 @@ std::vector<CellSums> sums_of(std::span<const CellRuns> cells, const RunCriteria
   const std::vector<RunBlock> blocks = run_blocks_of(cells);
   std::vector<CellSums> sums;
   for (std::size_t c = 0; c < cells.size(); ++c) sums.emplace_back(criteria);
+  CellSums group(criteria);
   for_each_in_order(
       parallel, blocks.size(),
       [&](std::size_t b) { return sums_of_block(cells[blocks[b].cell], blocks[b].runs, criteria); },
-      [&](std::size_t b, const CellSums& block) { sums[blocks[b].cell].merge(block); });
+      [&](std::size_t b, const CellSums& block) {
+        group.merge(block);
+        if (!blocks[b].ends_group) return;
+        sums[blocks[b].cell].merge(group);
+        group = CellSums(criteria);
+      });
   return sums;
 }
 
@@ -145,7 +187,9 @@ std::vector<double> first_values(const ResultFile& file, const StoredCell& cell,
   }
   const RunCriteria criteria = criteria_of(file, 0.95);
   const RunReader reader(file, cell);
-  const CellRuns all{&reader, complete};
+  std::vector<std::uint64_t> numbers;
+  for (const std::size_t i : complete) numbers.push_back(file.runs()[i]);
+  const CellRuns all{&reader, complete, numbers};
   return sums_of({&all, 1}, criteria, parallel).front().scores().column(score.name);
 }
 

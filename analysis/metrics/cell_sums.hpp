@@ -6,12 +6,15 @@
 #include "analysis/metrics/measured_run.hpp"
 #include "analysis/metrics/metric.hpp"
 #include "analysis/metrics/score.hpp"
+#include "engine/core/plan.hpp"
 #include "engine/records/result_file.hpp"
 #include "engine/threads/parallel.hpp"
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace montecarta::analysis {
@@ -41,8 +44,16 @@ class CellSums {
   void add(const MeasuredRun& run);
   /// Adds the sums over the runs behind these.
   void merge(const CellSums& next);
+  /// Processor times are NaN in the words, since they are no function of the study.
+  void write(SumWriter& words) const;
+  void read(SumReader& words);
+  /// What the words are: names of scores and series, kinds of numbers.
+  std::string layout() const;
   /// Scores of the runs so far.
   const ScoreTable& scores() const { return scores_; }
+  void put_cpu_seconds(std::vector<double> of_runs) {
+    scores_.put("cpu_seconds", std::move(of_runs));
+  }
   /// Fills all that complete runs say; label, failures and missing runs are there already.
   void put(CellAnalysis& cell);
 
@@ -66,10 +77,12 @@ inline constexpr std::size_t kRunsOfABlock = 64;
 struct CellRuns {
   const RunReader* reader;
   std::span<const std::size_t> runs;
+  std::span<const std::uint64_t> numbers;  ///< of these runs in the study
 };
 
-/// {cell} The sums over the runs of each cell. There are never more than two blocks in memory for
-/// each thread.
+/// {cell} The sums over the runs of each cell. The blocks of a group of runs (kRunsOfAGroup) are
+/// merged first, and then the groups, whose sums may be stored (stored_sums.hpp). There are never
+/// more than two blocks in memory for each thread.
 std::vector<CellSums> sums_of(std::span<const CellRuns> cells, const RunCriteria& criteria,
                               const Parallel& parallel);
 

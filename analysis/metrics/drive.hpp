@@ -15,6 +15,7 @@
 #include <limits>
 #include <span>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace montecarta::analysis {
@@ -101,6 +102,12 @@ struct DriveScores {
   /// reference was an input of the filter.
   bool is_below_reference = false;
 
+  static constexpr auto members() {
+    using Scores = DriveScores;
+    return std::tuple(&Scores::blocks, &Scores::errors, &Scores::leading, &Scores::median,
+                      &Scores::seconds, &Scores::fixes, &Scores::in_gaps, &Scores::undefined,
+                      &Scores::is_the_reference, &Scores::is_below_reference);
+  }
   const CorrelatedAverage& leads() const { return blocks[static_cast<std::size_t>(leading)]; }
 };
 

@@ -32,6 +32,9 @@ struct ErrorTrace {
   std::uint64_t run = 0;                         ///< its number in the study
   std::array<std::vector<double>, 3> error;      ///< {component}{scan}
   std::array<std::vector<double>, 3> deviation;  ///< {component}{scan}
+  static constexpr auto members() {
+    return std::tuple(&ErrorTrace::run, &ErrorTrace::error, &ErrorTrace::deviation);
+  }
 };
 
 /// The trace of run number `run`; both {scan}, in the frame of the true vehicle.

@@ -34,6 +34,7 @@ struct ConventionHint {
 /// Adds up the NEES of runs under every convention.
 class ConventionHints {
  public:
+  ConventionHints() = default;  ///< to be read
   /// Sums for errors of `components` at `scans`.
   ConventionHints(std::size_t components, std::size_t scans);
 
@@ -42,11 +43,12 @@ class ConventionHints {
   /// Judged by size and scans at `level`; `times` [s] of the scans.
   ConventionHint result(std::span<const double> times, double level, double within) const;
   static constexpr auto parts() {
-    return std::tuple(added(&ConventionHints::runs_, &ConventionHints::nees_));
+    return std::tuple(settings(&ConventionHints::components_),
+                      added(&ConventionHints::runs_, &ConventionHints::nees_));
   }
 
  private:
-  double components_;
+  double components_ = 0.0;
   std::uint64_t runs_ = 0;
   std::vector<SummedError> nees_;  ///< {kErrorConventions}
 };

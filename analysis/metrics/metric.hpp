@@ -7,6 +7,7 @@
 #include "analysis/output/number_text.hpp"
 #include "analysis/output/text_table.hpp"
 #include "analysis/statistics/merging.hpp"
+#include "analysis/statistics/sum_words.hpp"
 
 #include <functional>
 #include <memory>
@@ -27,6 +28,10 @@ class MetricSums {
   virtual void add(const MeasuredRun& run) = 0;
   /// Adds the sums of the same metric over the runs that follow these.
   virtual void merge(const MetricSums& next) = 0;
+  /// The sums as words (sum_words.hpp), and their layout.
+  virtual void write(SumWriter& words) const = 0;
+  virtual void read(SumReader& words) = 0;
+  virtual void add_layout(std::string& text) const = 0;
   /// Puts the result into the cell, which already has failures, scores (without intervals), series
   /// and the results of the metrics before this one.
   virtual void put(CellAnalysis& cell) = 0;
@@ -39,6 +44,9 @@ class MergedSums : public MetricSums {
   void merge(const MetricSums& next) final {
     merge_into(static_cast<Sums&>(*this), static_cast<const Sums&>(next));
   }
+  void write(SumWriter& words) const final { words.put(static_cast<const Sums&>(*this)); }
+  void read(SumReader& words) final { words.get(static_cast<Sums&>(*this)); }
+  void add_layout(std::string& text) const final { SumLayout<Sums>::add(text); }
 };
 
 /// A CSV file of a study.

@@ -16,6 +16,7 @@ namespace montecarta::analysis {
 /// grows by one number with every run.
 class NeesAccumulator {
  public:
+  NeesAccumulator() = default;  ///< to be read
   /// `dimension`: components of the block; 0: those of a pose in the plane.
   NeesAccumulator(ErrorBlock block, Moments moments, std::size_t scans, std::size_t dimension = 0);
   Moments moments() const { return moments_; }
@@ -28,7 +29,8 @@ class NeesAccumulator {
   NeesResult result(double level) const;
   static constexpr auto parts() {
     using Sums = NeesAccumulator;
-    return std::tuple(added(&Sums::sum_, &Sums::runs_, &Sums::samples_, &Sums::lower_rank_,
+    return std::tuple(settings(&Sums::block_, &Sums::moments_, &Sums::dimension_),
+                      added(&Sums::sum_, &Sums::runs_, &Sums::samples_, &Sums::lower_rank_,
                             &Sums::unusable_, &Sums::too_few_, &Sums::unjudged_runs_),
                       appended(&Sums::run_averages_));
   }
@@ -36,9 +38,9 @@ class NeesAccumulator {
  private:
   NeesSeries series(double level) const;
 
-  ErrorBlock block_;
-  Moments moments_;
-  std::size_t dimension_;
+  ErrorBlock block_ = ErrorBlock::pose;
+  Moments moments_ = Moments::spread;
+  std::size_t dimension_ = 0;
   std::vector<double> sum_;           ///< {scan} of finite NEES
   std::vector<std::uint32_t> runs_;   ///< {scan} in the sum
   std::vector<double> run_averages_;  ///< {run that has any}

@@ -59,6 +59,13 @@ struct ReferenceScores {
   double aligned_gated_share = kNone;  ///< [1]
   double heading_rmse = kNone;         ///< [rad] raw; NaN where the reference has no heading
 
+  static constexpr auto members() {
+    using Scores = ReferenceScores;
+    return std::tuple(&Scores::rms, &Scores::median, &Scores::gated_rms, &Scores::gated_share,
+                      &Scores::aligned_rms, &Scores::aligned_median, &Scores::aligned_gated_rms,
+                      &Scores::aligned_gated_share, &Scores::heading_rmse);
+  }
+
   /// True even if estimates are not finite: gated_share is then 0.
   bool has_fixes() const { return !std::isnan(rms) || !std::isnan(gated_share); }
   bool lost() const { return !(aligned_median <= kLostBeyond); }

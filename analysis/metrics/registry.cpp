@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <iterator>
 #include <limits>
+#include <utility>
 
 namespace montecarta::analysis {
 
@@ -172,6 +173,11 @@ void ScoreTable::add(std::span<const Value> values) {
   ++runs_;
   for (auto& column : columns_) column.resize(runs_, std::numeric_limits<double>::quiet_NaN());
   for (const Value& value : values) columns_[index_of(value.name)].back() = value.value;
+}
+
+void ScoreTable::put(std::string_view name, std::vector<double> values) {
+  expect(values.size() == runs_, "a score of other runs");
+  columns_[index_of(name)] = std::move(values);
 }
 
 const std::vector<double>& ScoreTable::column(std::string_view name) const {

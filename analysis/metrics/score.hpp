@@ -51,6 +51,8 @@ class ScoreTable {
   std::size_t runs() const { return runs_; }
   /// {run}; `name` must be that of a score.
   const std::vector<double>& column(std::string_view name) const;
+  /// Replaces the values of a score, one a run.
+  void put(std::string_view name, std::vector<double> values);
   static constexpr auto parts() {
     return std::tuple(added(&ScoreTable::runs_), appended(&ScoreTable::columns_));
   }

@@ -5,10 +5,14 @@
 #include "analysis/data/study_settings.hpp"
 #include "analysis/metrics/cell_sums.hpp"
 #include "analysis/metrics/imported_estimates.hpp"
+#include "analysis/metrics/stored_sums.hpp"
+#include "analysis/output/number_text.hpp"
 #include "engine/errors.hpp"
 #include "engine/runs/monte_carlo.hpp"
 
 #include <algorithm>
+#include <span>
+#include <utility>
 
 namespace montecarta::analysis {
 namespace {
@@ -35,6 +39,21 @@ void expect_planned(const ResultFile& file, const StoredCell& cell, std::size_t 
                    "a copy that is whole, or run the study again");
 }
 
+/// Interim analyses planned and made, by the runs that were made.
+void count_looks(const ResultFile& file, CellAnalysis& cell) {
+  const auto looks = looks_in(file.study_text(), file.study_runs());
+  const std::uint64_t made = cell.runs.size() + cell.failures.size();
+  cell.looks_planned = looks.size();
+  cell.looks_made = static_cast<std::size_t>(
+      std::ranges::count_if(looks, [&](std::uint64_t look) { return look <= made; }));
+}
+
+void add_failure(const ResultFile& file, std::uint64_t run, std::uint32_t step, std::string reason,
+                 CellAnalysis& cell) {
+  const double time = scan_time(drive_of_run(file, run), step);
+  cell.failures.push_back({run, step, std::move(reason), time});
+}
+
 /// Run indices in the file of the complete runs among the first `runs`; counts and names them all
 /// in `cell`.
 std::vector<std::size_t> complete_runs(const ResultFile& file, const StoredCell& stored,
@@ -55,29 +74,35 @@ std::vector<std::size_t> complete_runs(const ResultFile& file, const StoredCell&
     }
     if (status[i] == RunStatus::failed) {
       file.expect_whole(stored, i);
-      cell.failures.push_back({file.runs()[i], steps[i], reasons[i],
-                               scan_time(drive_of_run(file, file.runs()[i]), steps[i])});
+      add_failure(file, file.runs()[i], steps[i], reasons[i], cell);
     }
   }
-  const auto looks = looks_in(file.study_text(), file.study_runs());
-  const std::uint64_t made = complete.size() + cell.failures.size();
-  cell.looks_planned = looks.size();
-  cell.looks_made = static_cast<std::size_t>(
-      std::ranges::count_if(looks, [&](std::uint64_t look) { return look <= made; }));
   for (const std::size_t i : complete) cell.runs.push_back(file.runs()[i]);
+  count_looks(file, cell);
   return complete;
 }
 
 /// A cell whose runs are to be added up.
 struct CellTask {
   CellTask(const ResultFile& file, const StoredCell& stored, std::size_t runs)
-      : reader(file, stored) {
+      : stored_cell(&stored), reader(file, stored) {
     cell.label = stored.label;
     cell.filter = stored.filter;
     cell.long_name = stored.long_name;
     cell.particles = stored.particles;
     cell.mismatch = mismatch_of(stored);
-    complete = complete_runs(file, stored, runs, cell);
+    if (!file.has_sums()) complete = complete_runs(file, stored, runs, cell);
+  }
+
+  /// The sums that are stored in the file.
+  CellSums read_sums(const ResultFile& file, const RunCriteria& criteria,
+                     const Parallel& parallel) {
+    StoredSums found = read_stored_sums(file, *stored_cell, criteria, parallel);
+    cell.runs = std::move(found.complete);
+    for (StoredFailure& failure : found.failures)
+      add_failure(file, failure.run, failure.step, std::move(failure.reason), cell);
+    count_looks(file, cell);
+    return std::move(found.sums);
   }
 
   /// Releases the sums, which hold the errors of many runs.
@@ -88,17 +113,41 @@ struct CellTask {
   }
 
   CellAnalysis cell;
+  const StoredCell* stored_cell;
   RunReader reader;
   std::vector<std::size_t> complete;
 };
 
-std::vector<CellSums> sums_of_tasks(const std::vector<CellTask>& tasks, const RunCriteria& criteria,
-                                    const Parallel& parallel) {
+std::vector<CellSums> sums_of_tasks(const ResultFile& file, std::span<CellTask> tasks,
+                                    const RunCriteria& criteria, const Parallel& parallel) {
+  std::vector<CellSums> sums;
+  if (file.has_sums()) {
+    for (CellTask& task : tasks) sums.push_back(task.read_sums(file, criteria, parallel));
+    return sums;
+  }
   std::vector<CellRuns> runs;
   for (const CellTask& task : tasks) {
-    runs.push_back({&task.reader, task.complete});
+    runs.push_back({&task.reader, task.complete, task.cell.runs});
   }
   return sums_of(runs, criteria, parallel);
+}
+
+/// Throws StudyError unless the sums that the file may have are of this level, and of the first
+/// runs of the study, by which verdicts judge how errors of a run are correlated.
+void expect_usable_sums(const ResultFile& file, double level) {
+  if (!file.has_sums()) return;
+  if (level != kStoredLevel) {
+    throw StudyError(file.path().string() + ": level " + compact(level) +
+                     " (the file has sums instead of runs, made for the level " +
+                     compact(kStoredLevel) +
+                     "): use that level, or run the study again without "
+                     "sums in record.columns");
+  }
+  if (file.description().sums->first_run > 0) {
+    throw StudyError(file.path().string() +
+                     ": has sums of later runs alone (the study's first runs are needed for its "
+                     "verdict): merge it with the other shards first");
+  }
 }
 
 /// What the study in the file says, by a function of its text.
@@ -131,7 +180,7 @@ StudyAnalysis begin(const ResultFile& file, double level, std::optional<double> 
   study.study_sha256 = file.study_sha256();
   study.seed = file.seed();
   study.study_runs = file.study_runs();
-  study.runs_here = file.runs().size();
+  study.runs_here = runs_in(file);
   study.level = level;
   study.within = margin_of(file, within);
   study.looks = looks_in(file.study_text(), file.study_runs());
@@ -184,11 +233,12 @@ StudyAnalysis analyze(const ResultFile& file, double level, const Parallel& para
   nees_bounds(1, 1, level);  // refuses a wrong level before the work
   StudyAnalysis study = begin(file, level, within);
   expect_scans(file);
+  expect_usable_sums(file, level);
   const RunCriteria criteria = criteria_of(file, level, study.within);
   study.references = judged_references(criteria);
   std::vector<CellTask> tasks;
   for (const StoredCell& cell : file.cells()) tasks.emplace_back(file, cell, file.runs().size());
-  std::vector<CellSums> sums = sums_of_tasks(tasks, criteria, parallel);
+  std::vector<CellSums> sums = sums_of_tasks(file, tasks, criteria, parallel);
   BoundOfStudy bound(file);
   parallel.for_each(tasks.size() + bound.paths(), [&](std::size_t k) {
     if (k < tasks.size()) {
@@ -209,10 +259,10 @@ CellAnalysis analyze_cell(const ResultFile& file, const StoredCell& cell, double
                           std::size_t runs, const Parallel& parallel,
                           std::optional<double> within) {
   expect_scans(file);
+  expect_usable_sums(file, level);
   const RunCriteria criteria = criteria_of(file, level, margin_of(file, within));
   CellTask task(file, cell, runs);
-  const CellRuns all{&task.reader, task.complete};
-  task.put(std::move(sums_of(std::span(&all, 1), criteria, parallel).front()));
+  task.put(std::move(sums_of_tasks(file, std::span(&task, 1), criteria, parallel).front()));
   return std::move(task.cell);
 }
 

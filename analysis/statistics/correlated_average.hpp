@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <span>
+#include <tuple>
 #include <vector>
 
 namespace montecarta::analysis {
@@ -46,6 +47,10 @@ struct CorrelatedAverage {
   double effective_samples = 0.0;  ///< independent ones with an average that varies as much
   Interval ratio = {};             ///< where the expected average of all such drives lies, over
                                    ///< the components
+  static constexpr auto members() {
+    using Average = CorrelatedAverage;
+    return std::tuple(&Average::mean, &Average::effective_samples, &Average::ratio);
+  }
 };
 
 /// Tests whitened `errors` {component}{sample} in the order of time: the inverse of the Cholesky

@@ -15,7 +15,8 @@
 ///       return std::tuple(added(&Sums::squares_, &Sums::runs_), appended(&Sums::values_));
 ///     }
 ///
-/// A member that is named nowhere is not merged: a setting, or memory for one run.
+/// A member that is named nowhere is neither merged nor stored: memory for one run, or what the
+/// constructor knows. A plain aggregate of numbers names its members by members() instead.
 namespace montecarta::analysis {
 
 /// Merges `next`, the sums over the runs that come behind those of `sums`: by the parts or the
@@ -30,10 +31,26 @@ void merge_into(std::array<T, N>& sums, const std::array<T, N>& next);
 template <class T>
 void merge_into(std::optional<T>& sums, const std::optional<T>& next);
 
+/// Members of a class of sums with one rule, `merge`, by which those of two blocks become one.
+template <class Merge, class... Members>
+struct Part {
+  Merge merge;
+  std::tuple<Members...> members;  ///< pointers to members
+  bool of_first_runs = false;      ///< kept of the first runs of a study alone
+};
+
 /// Sums, which are merged themselves.
 template <class... Members>
 constexpr auto added(Members... members) {
-  return [=](auto& sums, const auto& next) { (merge_into(sums.*members, next.*members), ...); };
+  return Part{
+      [=](auto& sums, const auto& next) { (merge_into(sums.*members, next.*members), ...); },
+      std::tuple(members...)};
+}
+
+/// Settings, which are the same in all blocks, and stored where sums are stored (sum_words.hpp).
+template <class... Members>
+constexpr auto settings(Members... members) {
+  return Part{[](auto&, const auto&) {}, std::tuple(members...)};
 }
 
 /// Puts the values of `next` behind those of `values`.
@@ -49,34 +66,37 @@ void append(std::vector<std::vector<T>>& lists, const std::vector<std::vector<T>
 /// Values of each run, or several lists of them.
 template <class... Members>
 constexpr auto appended(Members... members) {
-  return [=](auto& sums, const auto& next) { (append(sums.*members, next.*members), ...); };
+  return Part{[=](auto& sums, const auto& next) { (append(sums.*members, next.*members), ...); },
+              std::tuple(members...)};
 }
 
 /// Values of the first runs, as many numbers as the member function `most` says.
 template <class Most, class... Members>
 constexpr auto appended_up_to(Most most, Members... members) {
-  return [=](auto& sums, const auto& next) {
-    const auto append_some = [&](auto& values, const auto& more) {
-      const std::size_t room = (sums.*most)() - values.size();
-      const auto count = static_cast<std::ptrdiff_t>(std::min(room, more.size()));
-      values.insert(values.end(), more.begin(), more.begin() + count);
-    };
-    (append_some(sums.*members, next.*members), ...);
-  };
+  return Part{[=](auto& sums, const auto& next) {
+                const auto append_some = [&](auto& values, const auto& more) {
+                  const std::size_t room = (sums.*most)() - values.size();
+                  const auto count = static_cast<std::ptrdiff_t>(std::min(room, more.size()));
+                  values.insert(values.end(), more.begin(), more.begin() + count);
+                };
+                (append_some(sums.*members, next.*members), ...);
+              },
+              std::tuple(members...), true};
 }
 
 /// What the first run says that has it: an optional.
 template <class... Members>
 constexpr auto of_first_run(Members... members) {
-  return [=](auto& sums, const auto& next) {
-    ((sums.*members ? void() : void(sums.*members = next.*members)), ...);
-  };
+  return Part{[=](auto& sums, const auto& next) {
+                ((sums.*members ? void() : void(sums.*members = next.*members)), ...);
+              },
+              std::tuple(members...)};
 }
 
 template <class T>
 void merge_into(T& sums, const T& next) {
   if constexpr (requires { T::parts(); }) {
-    std::apply([&](const auto&... merge_part) { (merge_part(sums, next), ...); }, T::parts());
+    std::apply([&](const auto&... part) { (part.merge(sums, next), ...); }, T::parts());
   } else if constexpr (requires { sums.merge(next); }) {
     sums.merge(next);
   } else {

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <tuple>
 #include <vector>
 
 namespace montecarta::analysis {
@@ -11,6 +12,7 @@ namespace montecarta::analysis {
 struct Interval {
   double lower = 0.0;
   double upper = 0.0;
+  static constexpr auto members() { return std::tuple(&Interval::lower, &Interval::upper); }
 };
 
 /// One end of each: `&Interval::lower` or `&Interval::upper`.

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <limits>
 #include <span>
+#include <tuple>
 #include <vector>
 
 namespace montecarta::analysis {
@@ -69,6 +70,9 @@ class SummaryOf {
     n_ += next.n_;
     mean_ += difference * (more / (n + more));
     squares_ += next.squares_ + difference * difference * (n * more / (n + more));
+  }
+  static constexpr auto members() {
+    return std::tuple(&SummaryOf::n_, &SummaryOf::mean_, &SummaryOf::squares_);
   }
   Summary result() const {
     Summary summary;

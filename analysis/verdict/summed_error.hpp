@@ -32,7 +32,7 @@ std::vector<FamilyTest> judge_tests(std::span<const MemberTest> tests, double le
 /// chi-square for any correlations between the errors of a run (STATISTICS 5).
 class SummedError {
  public:
-  explicit SummedError(std::size_t scans) : scans_(scans) {}
+  explicit SummedError(std::size_t scans = 0) : scans_(scans) {}
 
   /// A NEES of `dimension` components; one that is NaN is left out.
   void add(std::size_t scan, double nees, double dimension);

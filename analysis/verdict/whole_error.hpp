@@ -82,6 +82,7 @@ class DividedErrors;
 /// depends on the scans alone: the errors of the first runs are kept, at most 256 of them.
 class WholeError {
  public:
+  WholeError() = default;  ///< to be read
   WholeError(std::size_t dimension, std::size_t scans);
 
   /// One run, with its NEES {scan}, which is NaN where it is not judged.
@@ -91,6 +92,7 @@ class WholeError {
   static constexpr auto parts() {
     using Sums = WholeError;
     return std::tuple(
+        settings(&Sums::dimension_, &Sums::scans_, &Sums::stretches_),
         added(&Sums::runs_, &Sums::whole_samples_, &Sums::size_, &Sums::component_, &Sums::stretch_,
               &Sums::nees_, &Sums::bias_, &Sums::correlation_),
         appended_up_to(&Sums::most_kept_errors, &Sums::whitened_, &Sums::standardised_));
@@ -120,7 +122,7 @@ class WholeError {
   void add_components(const ErrorNames& names, std::vector<MemberTest>& all) const;
   void add_means(const ErrorNames& names, std::vector<MemberTest>& all) const;
 
-  std::size_t dimension_, scans_, stretches_;
+  std::size_t dimension_ = 0, scans_ = 0, stretches_ = 0;
   std::size_t runs_ = 0;        ///< with errors that are judged by their components
   double whole_samples_ = 0.0;  ///< scans of runs with such errors
   Sum size_;

@@ -3,6 +3,7 @@
 
 #include "analysis/data/run_reader.hpp"
 #include "analysis/metrics/measured_run.hpp"
+#include "analysis/metrics/stored_sums.hpp"
 #include "analysis/output/number_text.hpp"
 #include "analysis/page/html.hpp"
 #include "engine/errors.hpp"
@@ -331,8 +332,9 @@ std::size_t held_index(const ResultFile& file, std::uint64_t run) {
 /// Which run is shown, of how many, why this one, and whether more is stored of it than of others.
 std::string which_run(const ResultFile& file, const Replay& replay) {
   const std::size_t index = held_index(file, replay.run);
+  const std::uint64_t runs = runs_in(file);
   const std::string run = std::to_string(replay.run);
-  if (file.runs().size() == 1) return prose("replay", "only run", {{"run", run}});
+  if (runs == 1) return prose("replay", "only run", {{"run", run}});
   const std::size_t cells = file.cells().size();
   const auto complete = static_cast<std::size_t>(std::ranges::count_if(
       replay.cells, [](const ReplayCell& cell) { return cell.failure.empty(); }));

@@ -4,6 +4,7 @@
 #include "analysis/metrics/cell_sums.hpp"
 #include "analysis/metrics/imported_estimates.hpp"
 #include "analysis/metrics/metric.hpp"
+#include "analysis/metrics/stored_sums.hpp"
 #include "analysis/metrics/study_analysis.hpp"
 #include "analysis/metrics/verdict_table.hpp"
 #include "analysis/tables/tables.hpp"
@@ -17,6 +18,7 @@
 #include <cmath>
 #include <cstring>
 #include <sstream>
+#include <tuple>
 
 namespace montecarta::analysis {
 namespace {
@@ -63,6 +65,19 @@ std::string tables_of(const StudyAnalysis& study) {
   std::ostringstream tables;
   print_all(tables, study, 100);
   return tables.str();
+}
+
+void expect_same_bits(const StudyAnalysis& found, const StudyAnalysis& wanted) {
+  EXPECT_EQ(tables_of(found), tables_of(wanted));
+  for (std::size_t c = 0; c < wanted.cells.size(); ++c) {
+    const std::vector<Frame::Column> a = all_of(found.cells[c]), b = all_of(wanted.cells[c]);
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t k = 0; k < a.size(); ++k) {
+      ASSERT_EQ(a[k].numbers.size(), b[k].numbers.size());
+      const std::size_t bytes = a[k].numbers.size() * sizeof(double);
+      EXPECT_EQ(std::memcmp(a[k].numbers.data(), b[k].numbers.data(), bytes), 0) << a[k].name;
+    }
+  }
 }
 
 /// A result with every column.
@@ -118,15 +133,23 @@ TEST_P(BlocksOfRuns, GiveTheSameBitsOnAnyNumberOfThreads) {
   const StudyAnalysis one = analyze(file);
   for (const Backend backend : {Backend::tbb, Backend::openmp}) {
     const StudyAnalysis many = analyze(file, 0.95, Parallel(backend, 3));
-    EXPECT_EQ(tables_of(many), tables_of(one));
-    for (std::size_t c = 0; c < one.cells.size(); ++c) {
-      const std::vector<Frame::Column> a = all_of(many.cells[c]), b = all_of(one.cells[c]);
-      ASSERT_EQ(a.size(), b.size());
-      for (std::size_t k = 0; k < a.size(); ++k) {
-        ASSERT_EQ(a[k].numbers.size(), b[k].numbers.size());
-        const std::size_t bytes = a[k].numbers.size() * sizeof(double);
-        EXPECT_EQ(std::memcmp(a[k].numbers.data(), b[k].numbers.data(), bytes), 0) << a[k].name;
-      }
+    expect_same_bits(many, one);
+  }
+}
+
+TEST_P(BlocksOfRuns, GiveTheSameBitsWhereTheirSumsAreStored) {
+  const ResultFile file(path_);
+  write_group(folder_ / "sums.h5", path_, sums_to_store(file, Parallel::serial()));
+  const ResultFile sums(folder_ / "sums.h5");
+  EXPECT_LT(sums.runs().size(), kRuns);
+  const StudyAnalysis stored = analyze(sums), wanted = analyze(file);
+  expect_same_bits(stored, wanted);
+  for (std::size_t c = 0; c < wanted.cells.size(); ++c) {
+    ASSERT_EQ(stored.cells[c].failures.size(), wanted.cells[c].failures.size());
+    for (std::size_t k = 0; k < wanted.cells[c].failures.size(); ++k) {
+      const FailedRun &a = stored.cells[c].failures[k], &b = wanted.cells[c].failures[k];
+      EXPECT_EQ(std::tie(a.run, a.step, a.reason, a.time),
+                std::tie(b.run, b.step, b.reason, b.time));
     }
   }
 }

@@ -156,7 +156,7 @@ TEST(NeesPlan, SlowShowsAConsistentFilterAtLeastAsOftenAsItSays) {
   const NeesPlan plan({.dimension = 3, .scans = 20});
   const std::uint64_t runs = plan.runs_to_show(1.2, 0.8);
   const double shown = share_of_studies(100, [&](std::uint64_t study) {
-    return verdict_of({}, study, runs, 20, 1.2).answer == Answer::consistent;
+    return verdict_of(PlantedLaw{}, study, runs, 20, 1.2).answer == Answer::consistent;
   });
   EXPECT_GE(shown, 0.8 - share_errors(0.8, 100));
 }
