@@ -76,7 +76,8 @@ constexpr ColumnGroup kGroups[] = {{"pose", nullptr},
                                    {"map", &ColumnSelection::map},
                                    {"final_map", &ColumnSelection::final_map},
                                    {"joint", &ColumnSelection::joint},
-                                   {"observability", &ColumnSelection::observability}};
+                                   {"observability", &ColumnSelection::observability},
+                                   {"sums", &ColumnSelection::sums}};
 
 bool has_mixture(const Cell& cell) { return cell.reports.mixture; }
 bool has_particles(const Cell& cell) { return cell.particles > 0; }

@@ -58,6 +58,12 @@ void RunCounts::add(RunStatus status) {
                                     : spared);
 }
 
+RunCounts& RunCounts::operator+=(const RunCounts& other) {
+  complete += other.complete, failed += other.failed;
+  missing += other.missing, spared += other.spared;
+  return *this;
+}
+
 Progress::Form Progress::form_of(ProgressStyle style, std::FILE* out) {
   if (style == ProgressStyle::none) return Form::none;
   return style == ProgressStyle::automatic && is_smart_terminal(out) ? Form::bar : Form::plain;

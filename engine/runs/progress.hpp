@@ -25,6 +25,7 @@ struct RunCounts {
   /// Number of runs that are needed.
   std::uint64_t total() const { return ended() + missing; }
   void add(RunStatus status);
+  RunCounts& operator+=(const RunCounts& other);
 };
 
 /// Seconds in words of at most 8 characters: "12 s", "3:05 min", "12:40 h", "3.4 d".

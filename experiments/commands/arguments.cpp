@@ -264,14 +264,16 @@ std::optional<std::uint64_t> Arguments::count(const std::string& option, std::ui
 
 namespace {
 
-std::optional<RunRange> range_of(const Arguments& arguments, std::uint64_t runs) {
+std::optional<RunRange> range_of(const Arguments& arguments, const Settings& settings) {
+  const std::uint64_t runs = settings.count("study", "runs");
   const auto range = arguments.text("runs");
   const auto shard = arguments.text("shard");
   if (range && shard) {
     throw StudyError("--runs and --shard: both choose runs (one is enough): remove one of them");
   }
   if (range) return parse_run_range(*range, runs);
-  if (shard) return parse_shard(*shard, runs);
+  const bool in_groups = settings.lists("record", "columns", "sums");
+  if (shard) return parse_shard(*shard, runs, in_groups ? kRunsOfAGroup : 1);
   return std::nullopt;
 }
 
@@ -306,7 +308,7 @@ Study study_of(const Arguments& arguments) {
 
 StudyPlan plan_of(const Study& study, const Arguments& arguments) {
   return make_plan(
-      study, range_of(arguments, study.settings.count("study", "runs")),
+      study, range_of(arguments, study.settings),
       arguments.has(kAllowExternal) ? ExternalPrograms::allowed : ExternalPrograms::refused);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/commands/check.hpp"
 
+#include "analysis/metrics/stored_sums.hpp"
 #include "analysis/output/number_text.hpp"
 #include "analysis/output/text_table.hpp"
 #include "engine/records/fingerprint.hpp"
@@ -170,6 +171,16 @@ std::string memory_text(double bytes) {
   return "about " + bytes_text(bytes);
 }
 
+/// [byte] Size of the result file.
+double size_of_file(const StudyPlan& plan) {
+  if (!plan.columns.sums) return describe(plan, {}).bytes();
+  StudyPlan first_runs = plan;  // the only ones with rows
+  const std::uint64_t kept = std::max(kRunsBesideSums, plan.columns.full_runs);
+  first_runs.last_run = std::min(plan.first_run + kept, plan.last_run);
+  const double sums = bytes_of_sums(plan.runs_here(), plan.drives->itinerary().scans());
+  return describe(first_runs, {}).bytes() + sums * static_cast<double>(plan.cells.size());
+}
+
 /// Estimated cost of a study, with a table row for each cell below the headings.
 struct Costs {
   double cpu_seconds = 0.0;
@@ -195,15 +206,17 @@ Costs costs_of(const StudyPlan& plan) {
   const std::vector<RecordLayout> layouts = layouts_of(plan, Detail::usual);
   const std::vector<RecordLayout> full_layouts = layouts_of(plan, Detail::full);
   Costs costs;
-  costs.disk = file.bytes();
+  costs.disk = size_of_file(plan);
   costs.per_thread = 2.0 * static_cast<double>(itinerary.steps() * sizeof(Pose));
   for (std::size_t c = 0; c < plan.cells.size(); ++c) {
     const std::optional<Trial> first = trial_of(plan.cells[c], plan, drive);
     const double cpu_seconds = first.value_or(Trial{}).seconds * alike;
     const auto bytes = static_cast<double>(layouts[c].bytes());
     const double more = static_cast<double>(full_layouts[c].bytes()) - bytes;
-    costs.rows.push_back({time_of_run(first, cpu_seconds / runs), bytes_text(bytes),
-                          bytes_text(bytes * runs + more * full_runs)});
+    const double all = plan.columns.sums ? bytes_of_sums(plan.runs_here(), itinerary.scans())
+                                         : bytes * runs + more * full_runs;
+    costs.rows.push_back(
+        {time_of_run(first, cpu_seconds / runs), bytes_text(bytes), bytes_text(all)});
     costs.cpu_seconds += cpu_seconds;
     costs.per_thread += bytes + std::min(full_runs, 1.0) * more + first.value_or(Trial{}).bytes;
   }

@@ -29,7 +29,7 @@ const StoredCell& cell_to_judge(const Arguments& arguments, const ResultFile& fi
 
 /// Throws StudyError if runs are missing: those that ended first are not a fair sample.
 void expect_all_runs(const ResultFile& file, const StoredCell& cell) {
-  const RunCounts counts = count_status(file.status(cell));
+  const RunCounts counts = count_status(file, cell);
   if (counts.missing == 0) return;
   throw StudyError(file.path().string() + ": " + std::to_string(counts.missing) + " runs of cell " +
                    cell.label +

@@ -27,11 +27,16 @@ std::size_t runs_done(const ResultFile& file) {
 }
 
 void print_study(const ResultFile& file) {
+  const auto& sums = file.description().sums;
+  const std::string runs = sums ? std::to_string(sums->last_run - sums->first_run) + " of " +
+                                      std::to_string(file.study_runs()) + " in sums, the first " +
+                                      std::to_string(file.runs().size()) + " also in rows"
+                                : std::to_string(file.runs().size()) + " of " +
+                                      std::to_string(file.study_runs()) + ", of which " +
+                                      std::to_string(runs_done(file)) + " are done in every cell";
   std::cout << wrapped(file.title(), output_width()) << "\n"
             << listing(
-                   {{"runs", std::to_string(file.runs().size()) + " of " +
-                                 std::to_string(file.study_runs()) + ", of which " +
-                                 std::to_string(runs_done(file)) + " are done in every cell"},
+                   {{"runs", runs},
                     {"a run", std::to_string(file.times().size()) + " time steps, " +
                                   std::to_string(file.scan_times().size()) + " scans"},
                     {"size",
@@ -47,7 +52,7 @@ void print_study(const ResultFile& file) {
 void print_cells(const ResultFile& file) {
   std::vector<TableRow> rows{{"cell", "complete", "failed", "missing", "spared"}};
   for (const StoredCell& cell : file.cells()) {
-    const RunCounts counts = count_status(file.status(cell));
+    const RunCounts counts = count_status(file, cell);
     rows.push_back({cell.label, std::to_string(counts.complete), std::to_string(counts.failed),
                     std::to_string(counts.missing), std::to_string(counts.spared)});
   }
@@ -103,6 +108,11 @@ void print_datasets(const ResultFile& file) {
        {"/truth", bytes_of(runs * (3 * file.times().size() + 1)), "true poses of every run"},
        {"/timing", bytes_of(runs * file.cells().size() + 1), "computing time of the filters [s]"}},
       2);
+  if (file.has_sums()) {
+    std::uint64_t words = 0;
+    for (const std::uint64_t of_cell : file.description().sums->words) words += of_cell;
+    print_datasets({{"/sums", bytes_of(words), "sums over groups of runs"}}, 2);
+  }
   const std::size_t full_runs = file.description().full_runs_here();
   for (const StoredCell& cell : file.cells()) {
     print_columns("/cells/" + cell.label, cell.columns, runs);

@@ -13,6 +13,7 @@
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/output_guard.hpp"
 #include "experiments/commands/stored_result.hpp"
+#include "experiments/commands/summed_study.hpp"
 
 #include <filesystem>
 #include <iostream>
@@ -85,10 +86,10 @@ RunOptions options_of(const Study& study, const Arguments& arguments) {
   return options;
 }
 
-void tell_how_to_resume(const RunOutcome& outcome, const RunOptions& options,
+void tell_how_to_resume(const RunOutcome& outcome, const std::filesystem::path& work,
                         const Arguments& arguments) {
   std::cerr << "montecarta: stopped; " << outcome.counts.missing
-            << " runs are missing, the finished ones are in " << part_of(options.output).string()
+            << " runs are missing, the finished ones are in " << work.string()
             << ". Continue with:\n  " << resuming_command(arguments) << "\n";
 }
 
@@ -132,9 +133,12 @@ int run_command(const Arguments& arguments) {
   const auto report = report_folder(options, arguments);
   programs_of(study, arguments);
   const StudyPlan plan = plan_of(study, arguments);
-  const RunOutcome outcome = run_study(plan, options);
+  const RunOutcome outcome =
+      plan.columns.sums ? run_summed_study(plan, options) : run_study(plan, options);
   if (outcome.counts.missing > 0) {
-    tell_how_to_resume(outcome, options, arguments);
+    tell_how_to_resume(outcome,
+                       plan.columns.sums ? groups_of(options.output) : part_of(options.output),
+                       arguments);
     return exit_code(outcome, runs_under_scheduler());
   }
   if (!options.quiet) {

@@ -2,6 +2,7 @@
 #include "analysis/output/text_table.hpp"
 #include "engine/errors.hpp"
 #include "engine/records/result_layout.hpp"
+#include "engine/records/sum_groups.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/stored_result.hpp"
 #include "experiments/text/words.hpp"
@@ -30,6 +31,10 @@ class StudyStatus {
                        "ask for each study by itself");
     }
     for (std::size_t c = 0; c < labels_.size(); ++c) {
+      if (file.has_sums()) {
+        add_groups(file.sum_groups(file.cells().at(c)), status_[c]);
+        continue;
+      }
       const std::vector<RunStatus> here = file.status(file.cells().at(c));
       for (std::size_t i = 0; i < here.size(); ++i) {
         if (here[i] != RunStatus::missing) status_[c].at(file.runs()[i]) = here[i];
@@ -49,6 +54,16 @@ class StudyStatus {
   }
 
  private:
+  /// Which runs of a group failed does not matter here.
+  static void add_groups(const std::vector<SumGroup>& groups, std::vector<RunStatus>& status) {
+    for (const SumGroup& group : groups) {
+      const auto first = status.begin() + static_cast<std::ptrdiff_t>(group.first_run);
+      std::fill_n(first, group.complete, RunStatus::complete);
+      std::fill_n(first + static_cast<std::ptrdiff_t>(group.complete), group.failed,
+                  RunStatus::failed);
+    }
+  }
+
   std::string sha256_;
   std::vector<std::string> labels_;
   std::vector<std::vector<RunStatus>> status_;
@@ -78,7 +93,7 @@ std::string defect_of(const ResultFile& file) {
 std::string line_of(const ResultFile& file, Depth depth) {
   RunCounts all;
   for (const StoredCell& cell : file.cells()) {
-    for (const RunStatus each : file.status(cell)) all.add(each);
+    all += count_status(file, cell);
   }
   const std::string flaw = depth == Depth::every_byte ? defect_of(file) : "";
   const char* state = !flaw.empty() ? "damaged" : all.missing > 0 ? "unfinished" : "complete";

@@ -6,6 +6,7 @@
 #include "engine/records/open_result.hpp"
 #include "engine/records/posix_file.hpp"
 #include "engine/records/provenance.hpp"
+#include "engine/records/sum_groups.hpp"
 #include "experiments/judging/judged_study.hpp"
 #include "experiments/recordings/recorded_drive.hpp"
 #include "experiments/text/words.hpp"
@@ -32,6 +33,16 @@ void print_where_to_look(const std::string& name, const std::string& page) {
 RunCounts count_status(const std::vector<RunStatus>& status) {
   RunCounts counts;
   for (const RunStatus each : status) counts.add(each);
+  return counts;
+}
+
+RunCounts count_status(const ResultFile& file, const StoredCell& cell) {
+  if (!file.has_sums()) return count_status(file.status(cell));
+  RunCounts counts;
+  for (const SumGroup& group : file.sum_groups(cell)) {
+    counts.complete += group.complete;
+    counts.failed += group.failed;
+  }
   return counts;
 }
 

@@ -20,6 +20,8 @@ void print_where_to_look(const std::string& name, const std::string& page);
 
 /// Numbers of runs of a cell in each state.
 RunCounts count_status(const std::vector<RunStatus>& status);
+/// The runs of a cell in rows or in sums.
+RunCounts count_status(const ResultFile& file, const StoredCell& cell);
 
 /// Removes the last column of a table, which counts spared runs, if no cell has any.
 std::vector<TableRow> without_idle_spared(std::vector<TableRow> rows);

@@ -6,11 +6,14 @@
 #include "experiments/commands/arguments.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/stored_result.hpp"
+#include "experiments/commands/summed_study.hpp"
 #include "experiments/study/make_plan.hpp"
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <iostream>
+#include <unistd.h>
 
 namespace montecarta::experiments {
 namespace {
@@ -75,6 +78,31 @@ std::uint64_t seed_of(const Arguments& arguments) {
       .value_or(static_cast<std::uint64_t>(now) % 1'000'000);
 }
 
+/// Computes the sums over one group of runs again, chosen by `seed`, if the file has sums. Prints
+/// the result and returns whether they are equal.
+bool verify_sums(const ResultFile& file, const StudyPlan& plan, std::uint64_t seed,
+                 const Parallel& parallel) {
+  if (!file.has_sums()) return true;
+  const std::size_t g = draw_order(seed, {}) % file.sum_groups(file.cells().front()).size();
+  const SumGroup chosen = file.sum_groups(file.cells().front())[g];
+  std::filesystem::path folder = file.path();
+  folder += ".verify." + std::to_string(::getpid());
+  const auto computed = computed_group(plan, chosen.first_run, folder, parallel);
+  bool are_equal = true;
+  for (std::size_t c = 0; c < computed.size(); ++c) {
+    const SumGroup stored = file.sum_groups(file.cells()[c])[g];
+    const bool is_equal = stored.layout == computed[c].head.layout &&
+                          stored.complete == computed[c].head.complete &&
+                          file.sums(stored) == computed[c].sums;
+    are_equal = are_equal && is_equal;
+  }
+  std::cout << wrapped("The sums over runs " + std::to_string(chosen.first_run) + " to " +
+                           std::to_string(chosen.first_run + chosen.runs - 1) +
+                           (are_equal ? " are reproduced byte for byte" : " differ"),
+                       output_width());
+  return are_equal;
+}
+
 }  // namespace
 
 int verify_command(const Arguments& arguments) {
@@ -102,7 +130,8 @@ int verify_command(const Arguments& arguments) {
                            std::to_string(stored.size()) + " stored (sample " +
                            std::to_string(seed) + ")",
                        output_width());
-  return equal == std::ssize(chosen) && damaged == 0 ? kDone : kDifferent;
+  const bool sums_equal = verify_sums(file, plan, seed, parallel_of(arguments));
+  return equal == std::ssize(chosen) && damaged == 0 && sums_equal ? kDone : kDifferent;
 }
 
 }  // namespace montecarta::experiments

@@ -60,6 +60,10 @@ ColumnSelection columns_of(const Settings& s) {
     if (group.is_chosen != nullptr)
       columns.*(group.is_chosen) = s.lists("record", "columns", group.name);
   }
+  if (columns.sums) {  // rows are not kept, so that these cost nothing
+    columns.covariance = columns.ancestry = true;
+    columns.full_runs = std::max<std::uint64_t>(columns.full_runs, 1);
+  }
   return columns;
 }
 
@@ -188,17 +192,20 @@ RunRange parse_run_range(const std::string& text, std::uint64_t runs) {
                    std::to_string(runs - 1) + "): give e.g. --runs 0:" + std::to_string(runs));
 }
 
-RunRange parse_shard(const std::string& text, std::uint64_t runs) {
+RunRange parse_shard(const std::string& text, std::uint64_t runs, std::uint64_t runs_of_unit) {
   const auto parts = split(text, '/');
   const auto index = to_count(parts.front());
   const auto count = to_count(parts.back());
-  if (parts.size() == 2 && index && count && *index < *count && *count <= runs) {
-    return {*index * runs / *count, (*index + 1) * runs / *count};
+  const std::uint64_t units = (runs + runs_of_unit - 1) / runs_of_unit;
+  if (parts.size() == 2 && index && count && *index < *count && *count <= units) {
+    return {*index * units / *count * runs_of_unit,
+            std::min((*index + 1) * units / *count * runs_of_unit, runs)};
   }
   throw StudyError("--shard " + text +
                    ": no shard of this study (I/N means part I, from 0 to N-1, of N; at most " +
-                   std::to_string(runs) + " parts, one a run): give e.g. --shard 0/" +
-                   std::to_string(runs < 4 ? runs : 4));
+                   std::to_string(units) + " parts, one " +
+                   (runs_of_unit == 1 ? "a run" : "for " + std::to_string(runs_of_unit) + " runs") +
+                   "): give e.g. --shard 0/" + std::to_string(units < 4 ? units : 4));
 }
 
 std::string objection_to_joint(const Study& study) {
@@ -225,8 +232,40 @@ std::string objection_to_observability(const Study& study) {
          "detection fixes a landmark";
 }
 
+namespace {
+
+/// Throws StudyError if the study stores sums of runs and cannot, or not of this range.
+void expect_summable(const Study& study, const std::optional<RunRange>& range) {
+  const Settings& settings = study.settings;
+  if (!settings.lists("record", "columns", "sums")) return;
+  const std::string place = settings.place("record", "columns") + ": sums ";
+  const std::string group = std::to_string(kRunsOfAGroup);
+  if (study.until) {
+    throw StudyError(place +
+                     "with study.until (interim analyses need the rows of all runs): take "
+                     "one of them out");
+  }
+  if (study.log != nullptr) {
+    throw StudyError(place + "of a recorded drive (its runs are judged one by one): take sums out");
+  }
+  if (settings.count("record", "full_runs") > kRunsOfAGroup) {
+    throw StudyError(settings.place("record", "full_runs") + ": more than " + group +
+                     " (sums store at most so many runs in full): lower it");
+  }
+  const std::uint64_t runs = settings.count("study", "runs");
+  const auto is_border = [&](std::uint64_t run) { return run % kRunsOfAGroup == 0 || run == runs; };
+  if (range && !(is_border(range->first) && is_border(range->last))) {
+    throw StudyError("--runs " + std::to_string(range->first) + ":" + std::to_string(range->last) +
+                     ": not whole groups (runs are summed up in groups of " + group +
+                     "): give multiples of " + group);
+  }
+}
+
+}  // namespace
+
 StudyPlan make_plan(const Study& study, std::optional<RunRange> range, ExternalPrograms programs) {
   if (range && study.until) refuse_part(study);
+  expect_summable(study, range);
   expect_verdict(study);
   const Settings& settings = study.settings;
   StudyPlan plan;

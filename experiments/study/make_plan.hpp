@@ -19,9 +19,9 @@ struct RunRange {
 
 /// "A:B", half open; A or B may be left out. Throws StudyError unless 0 <= A < B <= runs.
 RunRange parse_run_range(const std::string& text, std::uint64_t runs);
-/// "I/N": the I-th (from 0) of N nearly equal ranges that follow each other. Throws StudyError
-/// unless I < N <= runs.
-RunRange parse_shard(const std::string& text, std::uint64_t runs);
+/// "I/N": the I-th (from 0) of N nearly equal ranges that follow each other and consist of whole
+/// units of so many runs. Throws StudyError unless I < N and there are N units.
+RunRange parse_shard(const std::string& text, std::uint64_t runs, std::uint64_t runs_of_unit = 1);
 
 /// Why the study cannot store joint estimates, as the end of a StudyError: "(why): remedy"; empty
 /// if it can.

@@ -234,7 +234,9 @@ void add_record(const SectionOfTable& record) {
   std::vector<std::string> groups;
   for (const ColumnGroup& group : column_groups()) groups.emplace_back(group.name);
   Setting& columns = record.choice(
-      "columns", groups, "columns that are stored. They are explained by: montecarta list columns");
+      "columns", groups,
+      "columns that are stored, or sums over runs in place of them. They are explained by: "
+      "montecarta list columns");
   columns.kind = Setting::Kind::choices;
   columns.fallback = "pose, covariance, ancestry";
   set_for_log(columns, "pose, covariance, ancestry, final_map");

@@ -102,7 +102,7 @@ class EkfSlam final : public SlamFilter {
   }
 
   /// m <- m + K nu, P <- P - K S K' (EQUATIONS (15.1)).
-  void condition(const Innovation& v) {
+  void condition(const JointInnovation& v) {
     const auto& [nu, S] = v.value;
     const Eigen::Matrix<double, Eigen::Dynamic, 2> K =
         S.llt().solve(v.cross.transpose()).transpose();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "filters/fastslam/known_association.hpp"
+#include "filters/fastslam/delayed_association.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/core/plan.hpp"
+#include "engine/records/sum_groups.hpp"
+#include "engine/runs/monte_carlo.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+namespace montecarta::experiments {
+
+/// Runs a study that stores sums (ColumnSelection::sums). Each group of runs is run like a study of
+/// its own, analysed and stored in the folder OUT.h5.groups, and its rows are removed. At the end
+/// the groups become OUT.h5. Ends early, and is resumed, like run_study().
+RunOutcome run_summed_study(const StudyPlan& plan, const RunOptions& options);
+
+/// The folder of unfinished work.
+std::filesystem::path groups_of(std::filesystem::path output);
+
+/// {cell} The sums over the group of runs that begins at `first_run`, computed again. Its rows are
+/// in `folder` meanwhile, and removed.
+std::vector<NewGroup> computed_group(const StudyPlan& plan, std::uint64_t first_run,
+                                     const std::filesystem::path& folder, const Parallel& parallel);
+
+}  // namespace montecarta::experiments
