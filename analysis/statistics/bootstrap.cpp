@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kMostReplicates = 2000, kFewestReplicates = 400;
 constexpr std::size_t kMostDraws = 20'000'000;
-constexpr std::size_t kMostRuns = 20'000;
+constexpr std::size_t kMostRunsToDraw = 20'000;
 
 double normal_share(double z) { return boost::math::cdf(boost::math::normal(), z); }
 
@@ -105,7 +105,7 @@ std::vector<Interval> bootstrap_means(std::span<const std::vector<double>> colum
   std::vector<Interval> intervals(columns.size(), {kNaN, kNaN});
   const std::size_t runs = columns.empty() ? 0 : columns.front().size();
   if (runs < 2) return intervals;
-  if (runs > kMostRuns) {
+  if (runs > kMostRunsToDraw) {
     std::ranges::transform(columns, intervals.begin(), [&](const std::vector<double>& column) {
       return t_interval(column, level);
     });

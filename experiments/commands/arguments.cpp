@@ -32,7 +32,8 @@ OptionSpec option_in(const std::string& line) {
       option.repeatable = true;
     } else {
       option.values.push_back(word);
-      option.is_list = word.ends_with("...");
+      // NAME,... is one word with commas.
+      option.is_list = word.ends_with("...") && word.find(",...") == std::string::npos;
     }
   }
   return option;

@@ -245,7 +245,7 @@ void expect_summable(const Study& study, const std::optional<RunRange>& range) {
                      "with study.until (interim analyses need the rows of all runs): take "
                      "one of them out");
   }
-  if (study.log != nullptr) {
+  if (!study.logs.empty()) {
     throw StudyError(place + "of a recorded drive (its runs are judged one by one): take sums out");
   }
   if (settings.count("record", "full_runs") > kRunsOfAGroup) {

@@ -94,6 +94,7 @@ TEST_F(SummedStudy, SaysTheSameAsOneWithAllRows) {
         {"compare", "--baseline", "ekf_slam", "--metric", "position_rmse"}}) {
     const Called rows = call_with(words, {"rows.h5"}), sums = call_with(words, {"sums.h5"});
     EXPECT_EQ(sums.code, rows.code) << sums.err;
+    ASSERT_NE(rows.out, "") << rows.err;
     EXPECT_EQ(sums.out.substr(sums.out.find('\n')), rows.out.substr(rows.out.find('\n')));
   }
 }

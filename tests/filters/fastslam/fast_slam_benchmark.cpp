@@ -3,6 +3,7 @@
 #include "filters/factory.hpp"
 #include "filters/models/ackermann.hpp"
 #include "filters/models/range_bearing.hpp"
+#include "filters/setup/filter_setup.hpp"
 
 #include <benchmark/benchmark.h>
 
