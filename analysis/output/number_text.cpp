@@ -79,7 +79,11 @@ std::string time_with_interval(double time, const Interval& interval) {
 std::string exact_text(double value) {
   if (std::isnan(value)) return "nan";
   std::array<char, 64> text{};
-  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+  const bool is_count = std::abs(value) < 1e15 && value == std::trunc(value);  // 100000, not 1e+05
+  const auto end = is_count
+                       ? std::to_chars(text.begin(), text.end(), value, std::chars_format::fixed)
+                       : std::to_chars(text.begin(), text.end(), value);
+  return {text.data(), end.ptr};
 }
 
 std::string duration_text(double seconds) {

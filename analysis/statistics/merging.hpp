@@ -38,6 +38,8 @@ struct Part {
   std::tuple<Members...> members;  ///< pointers to members
   bool of_first_runs = false;      ///< kept of the first runs of a study alone
 };
+template <class Merge, class... Members>
+Part(Merge, std::tuple<Members...>, bool = false) -> Part<Merge, Members...>;  // for clang 14
 
 /// Sums, which are merged themselves.
 template <class... Members>

@@ -46,8 +46,8 @@ void MapAssociation::add(const Detection& fresh) {
     if (identity >= slot_of_identity_.size()) slot_of_identity_.resize(identity + 1, kUnseen);
     slot_of_identity_[identity] = static_cast<std::uint32_t>(slot);
   } else if (slot >= settings_.most_landmarks) {
-    throw RunError("the map grew beyond " + std::to_string(settings_.most_landmarks) +
-                   " landmarks");
+    throw std::runtime_error("the map grew beyond " + std::to_string(settings_.most_landmarks) +
+                             " landmarks");
   }
   made_of_.push_back(fresh.identity);
 }

@@ -205,8 +205,8 @@ class NearestAssociation {
                 Maps& maps) {
     const auto slot = static_cast<std::uint32_t>(count_of(particle));
     if (slot >= settings_.most_landmarks) {
-      throw RunError("the map of a particle grew beyond " +
-                     std::to_string(settings_.most_landmarks) + " landmarks");
+      throw std::runtime_error("the map of a particle grew beyond " +
+                               std::to_string(settings_.most_landmarks) + " landmarks");
     }
     if (slot == maps.slots()) maps.add(context);
     set(counts_[particle / kLanes], particle % kLanes, slot + 1.0);

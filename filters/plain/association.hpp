@@ -112,10 +112,12 @@ inline double log_unmatched(const FilterSetup& setup) {
          setup.association.log_new_density_offset;
 }
 
-/// Throws RunError if a map with unknown association has grown beyond its limit.
+/// Throws std::runtime_error, which fails the run, if a map with unknown association has grown
+/// beyond its limit.
 inline void refuse_large_map(std::size_t landmarks, const AssociationSettings& settings) {
   if (settings.kind == Association::known || landmarks <= settings.most_landmarks) return;
-  throw RunError("the map grew beyond " + std::to_string(settings.most_landmarks) + " landmarks");
+  throw std::runtime_error("the map grew beyond " + std::to_string(settings.most_landmarks) +
+                           " landmarks");
 }
 
 }  // namespace montecarta::filters::plain

@@ -408,5 +408,16 @@ TEST(ShellQuoted, ReadsBackAsOneWord) {
   EXPECT_EQ(shell_quoted(""), "''");
 }
 
+class GrowingMap : public BlinkProgram {
+ protected:
+  GrowingMap() : BlinkProgram(kBlink + "[association]\nkind = nearest\nmost_landmarks = 1\n") {}
+};
+
+TEST_F(GrowingMap, FailsItsRunAndNotTheStudy) {
+  const Called run = call({"run", "blink.ini", "-o", "out.h5"});
+  EXPECT_EQ(run.code, 3) << run.err;
+  EXPECT_THAT(call({"analyze", "out.h5"}).out, testing::HasSubstr("grew beyond 1 landmarks"));
+}
+
 }  // namespace
 }  // namespace montecarta::experiments
