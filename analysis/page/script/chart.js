@@ -7,7 +7,7 @@ class ChartFigure {
   constructor(figure, data) {
     this.data = data;
     data.panels.reduce((above, panel) => (panel.x ??= above), null);
-    this.whole = {logarithmic: data.x_logarithmic ?? false, from: data.x_from, to: data.x_to};
+    this.whole = {logarithmic: false, from: data.x_from, to: data.x_to};
     this.horizontal = {...this.whole, from: data.x_first ?? data.x_from};
     const live = htmlElement("div", {class: "live"});
     figure.prepend(live);

@@ -14,9 +14,8 @@ function valuesAt(plot, at, isHidden, x_label) {
   if (share < 0 || share > 1) return null;
   const {x, curves} = plot.panel;
   const i = nearest(x, valueAt(plot.horizontal, share));
-  const text = ({y, least, greatest, envelope}) => readable(y[i]) + (y[i] === null ? ""
-    : least ? ` (${readable(least[i])} to ${readable(greatest[i])})`
-      : envelope ? ` (within ±${readable(envelope[i])})` : "");
+  const text = ({y, envelope}) => readable(y[i]) +
+    (y[i] !== null && envelope ? ` (within ±${readable(envelope[i])})` : "");
   const rows = curves.filter((curve) => !isHidden(curve))
     .map((curve) => ({sample: curve, name: curve.legend, text: text(curve)}));
   return {title: sentence(x_label, x[i]), rows, value: x[i], x: plot.x(x[i]), y: plot.box.top};

@@ -138,15 +138,6 @@ class Plot {
     }
     svgElement("path", {class: "curve", "data-cell": curve.legend, d: this.pathOf(curve),
       ...lineStyle(curve)}, parent);
-    if (!curve.least) return;
-    const {x} = this.panel;
-    const known = x.map((_, i) => i).filter((i) => curve.y[i] !== null);
-    const at = (i, value) => `M${this.x(x[i]).toFixed(1)} ${this.y(value).toFixed(1)}`;
-    const bars = known.map((i) =>
-      `${at(i, curve.least[i])}V${this.y(curve.greatest[i]).toFixed(1)}`);
-    svgElement("path", {class: "curve", d: bars.join(""), stroke: lineStyle(curve).stroke}, parent);
-    svgElement("path", {class: "curve dots", d: known.map((i) => `${at(i, curve.y[i])}h0`).join(""),
-      stroke: lineStyle(curve).stroke}, parent);
   }
 
   /** The area of so much around zero, a part for each stretch without a gap. */

@@ -31,9 +31,10 @@ std::vector<std::string> split_quoted(const std::string& line) {
   return cells;
 }
 
-class SummedStudy : public BlinkProgram {
+// Slow: thousands of runs, too many for a sanitizer (blocks_of_runs_test.cpp has few).
+class SlowSummedStudy : public BlinkProgram {
  protected:
-  SummedStudy() : BlinkProgram(study()) {}
+  SlowSummedStudy() : BlinkProgram(study()) {}
   /// Thousands of runs take a second.
   static std::string study() {
     return "[study]\nname = blink\nruns = " + std::to_string(kSummedRuns) +
@@ -74,7 +75,7 @@ class SummedStudy : public BlinkProgram {
   }
 };
 
-TEST_F(SummedStudy, SaysTheSameAsOneWithAllRows) {
+TEST_F(SlowSummedStudy, SaysTheSameAsOneWithAllRows) {
   ASSERT_EQ(run("sums.h5").code, 0);
   ASSERT_EQ(run("rows.h5", {"--set", "record.columns=pose,covariance,ancestry"}).code, 0);
   EXPECT_LT(std::filesystem::file_size(folder_ / "sums.h5"),
@@ -99,7 +100,7 @@ TEST_F(SummedStudy, SaysTheSameAsOneWithAllRows) {
   }
 }
 
-TEST_F(SummedStudy, HasTheSameBitsHoweverItIsRun) {
+TEST_F(SlowSummedStudy, HasTheSameBitsHoweverItIsRun) {
   ASSERT_EQ(run("one.h5", {"--threads", "1"}).code, 0);
   const auto wanted = words_of("one.h5");
   for (const char* threads : {"2", "8"}) {
@@ -116,7 +117,7 @@ TEST_F(SummedStudy, HasTheSameBitsHoweverItIsRun) {
   expect_refused({"analyze", "shard1.h5"}, "merge it");
 }
 
-TEST_F(SummedStudy, IsResumedAfterItWasStoppedOrKilled) {
+TEST_F(SlowSummedStudy, IsResumedAfterItWasStoppedOrKilled) {
   ASSERT_EQ(run("whole.h5").code, 0);
   EXPECT_EQ(run("out.h5", {"--time-budget", "0.01"}).code, 85);
   EXPECT_TRUE(exists("out.h5.groups"));
@@ -130,7 +131,7 @@ TEST_F(SummedStudy, IsResumedAfterItWasStoppedOrKilled) {
   EXPECT_FALSE(exists("out.h5.groups"));
 }
 
-TEST_F(SummedStudy, IsRefusedWithAFlippedByte) {
+TEST_F(SlowSummedStudy, IsRefusedWithAFlippedByte) {
   ASSERT_EQ(run("out.h5", {"--runs", "0:4096"}).code, 0);
   const ResultFile file(folder_ / "out.h5");
   const SumGroup group = file.sum_groups(file.cells().front()).front();
@@ -144,7 +145,7 @@ TEST_F(SummedStudy, IsRefusedWithAFlippedByte) {
   }
 }
 
-TEST_F(SummedStudy, IsRefusedIfAnotherVersionWroteItsSums) {
+TEST_F(SlowSummedStudy, IsRefusedIfAnotherVersionWroteItsSums) {
   ASSERT_EQ(run("rows.h5", {"--runs", "0:16", "--set", "record.columns=pose,covariance", "--set",
                             "study.runs=16"})
                 .code,
@@ -158,7 +159,7 @@ TEST_F(SummedStudy, IsRefusedIfAnotherVersionWroteItsSums) {
   expect_refused({"analyze", "other.h5"}, "another layout");
 }
 
-TEST_F(SummedStudy, RefusesWhatNeedsRows) {
+TEST_F(SlowSummedStudy, RefusesWhatNeedsRows) {
   const std::vector<std::string> check = {"check", "blink.ini"};
   for (const std::vector<std::string>& more : {std::vector<std::string>{"--runs", "0:100"},
                                                {"--shard", "0/3"},
