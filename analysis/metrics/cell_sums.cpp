@@ -80,8 +80,10 @@ void CellSums::write(SumWriter& words) const {
 }
 
 void CellSums::read(SumReader& words) {
+  const std::size_t series = over_time_.size();
   words.get(scores_);
   words.get(over_time_);
+  SumReader::expect(scores_.is_whole() && over_time_.size() == series);
   for (const auto& metric : metrics_) metric->read(words);
 }
 

@@ -175,6 +175,11 @@ void ScoreTable::add(std::span<const Value> values) {
   for (const Value& value : values) columns_[index_of(value.name)].back() = value.value;
 }
 
+bool ScoreTable::is_whole() const {
+  const auto is_full = [&](const std::vector<double>& column) { return column.size() == runs_; };
+  return columns_.size() == all_scores().size() && std::ranges::all_of(columns_, is_full);
+}
+
 void ScoreTable::put(std::string_view name, std::vector<double> values) {
   expect(values.size() == runs_, "a score of other runs");
   columns_[index_of(name)] = std::move(values);

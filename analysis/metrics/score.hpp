@@ -49,6 +49,8 @@ class ScoreTable {
   ScoreTable();
   void add(const MeasuredRun& run);
   std::size_t runs() const { return runs_; }
+  /// Whether each score has a value for every run, which a file may not keep.
+  bool is_whole() const;
   /// {run}; `name` must be that of a score.
   const std::vector<double>& column(std::string_view name) const;
   /// Replaces the values of a score, one a run.

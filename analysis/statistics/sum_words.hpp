@@ -110,8 +110,12 @@ class SumReader {
   void get(std::vector<T>& values) {
     const std::uint64_t length = next();
     expect(length <= words_.size());  // every value takes at least a word
-    values.resize(length);
-    for (T& value : values) get(value);
+    values.clear();
+    for (std::uint64_t k = 0; k < length; ++k) {  // grows as long as there are words
+      T value{};
+      get(value);
+      values.push_back(std::move(value));
+    }
   }
   template <class T, std::size_t N>
   void get(std::array<T, N>& values) {
@@ -129,6 +133,8 @@ class SumReader {
     for (double& value : matrix.reshaped()) get(value);
   }
 
+  /// Throws StudyError, which says that the sums are damaged, unless the condition holds.
+  static void expect(bool condition);
   /// Throws StudyError unless all words are read.
   void expect_end() const { expect(words_.empty()); }
 
@@ -139,7 +145,6 @@ class SumReader {
     words_ = words_.subspan(1);
     return word;
   }
-  static void expect(bool condition);
 
   std::span<const std::uint64_t> words_;
 };

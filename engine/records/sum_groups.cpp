@@ -56,7 +56,7 @@ std::vector<SumGroup> find_groups(const PosixFile& file, const Slab& sums, const
     left -= kGroupHeadWords;
     const std::uint64_t count = end_of_group(run, runs) - run;
     const bool is_next = group.first_run == run && group.runs == count && group.complete <= count &&
-                         group.failed <= count - group.complete;
+                         group.failed == count - group.complete;
     if (!is_next || group.words > left) refuse_sums(file.path());
     left -= group.words;
     offset += (kGroupHeadWords + group.words) * kWordBytes;

@@ -176,8 +176,8 @@ std::vector<Entry> columns() {
   std::vector<Entry> entries;
   for (const ColumnGroup& group : column_groups()) {
     if (group.name == std::string("sums"))
-      entries.push_back({.name = "no column",
-                         .summary = "sums over groups of runs in place of their rows",
+      entries.push_back({.name = group.name,
+                         .summary = "no column: sums over groups of runs in place of their rows",
                          .heading = group.name});
     for (const ListedColumn& column : listed_columns()) {
       if (column.group != group.name) continue;

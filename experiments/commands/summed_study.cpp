@@ -46,12 +46,21 @@ void remove_rows(const fs::path& rows) {
   fs::remove(part_of(rows));
 }
 
+/// Throws StudyError if a run or the seal of the file is damaged.
+void expect_whole_file(const fs::path& path) {
+  const ResultFile file(path);
+  for (std::size_t i = 0; i < file.runs().size(); ++i) {
+    for (const StoredCell& cell : file.cells()) file.expect_whole(cell, i);
+  }
+}
+
 /// Whether the file is the finished group of this plan; a damaged one is computed again. Throws
 /// StudyError if it is of another study.
 bool is_finished(const fs::path& path, const StudyPlan& group, const TextPairs& provenance) {
   if (!is_there(path)) return false;
   ResultDescription stored;
   try {
+    expect_whole_file(path);
     stored = describe_shard(path);
   } catch (const std::runtime_error&) {
     return false;
@@ -69,23 +78,23 @@ RunCounts counts_in(const fs::path& path) {
   return counts;
 }
 
-/// Runs one group, unless it is finished, and returns what has stopped it.
-StopReason run_group(const StudyPlan& group, const fs::path& folder, const RunOptions& options,
-                     std::optional<double> time_left, std::uint64_t& runs) {
+/// Runs one group, unless it is finished.
+RunOutcome run_group(const StudyPlan& group, const fs::path& folder, const RunOptions& options,
+                     std::optional<double> time_left) {
   const fs::path sums = file_in(folder, "group", group.first_run);
-  if (is_finished(sums, group, options.provenance)) return StopReason::complete;
+  if (is_finished(sums, group, options.provenance)) return {};
   RunOptions of_group = options;
   of_group.output = file_in(folder, "rows", group.first_run);
   of_group.force = false;
-  of_group.resume = !options.attempt;
+  of_group.attempt = false;
+  of_group.resume = true;
   of_group.progress = ProgressStyle::none;
   if (time_left) of_group.time_budget = std::max(*time_left, kShortestSitting);
   const RunOutcome outcome = run_study(group, of_group);
-  runs += outcome.runs_here;
-  if (outcome.counts.missing > 0) return outcome.stopped;
+  if (outcome.counts.missing > 0) return outcome;
   write_group(sums, of_group.output, sums_to_store(ResultFile(of_group.output), options.parallel));
   remove_rows(of_group.output);
-  return StopReason::complete;
+  return outcome;
 }
 
 void show_progress(const StudyPlan& plan, std::uint64_t done, double seconds,
@@ -96,24 +105,59 @@ void show_progress(const StudyPlan& plan, std::uint64_t done, double seconds,
                static_cast<unsigned long long>(plan.runs_here()), seconds);
 }
 
-/// Begins or continues the work in the folder. Returns false if the result is complete already.
-bool open_work(const fs::path& folder, const StudyPlan& plan, const RunOptions& options) {
-  const bool goes_on = options.resume || options.attempt;
-  if (options.force) fs::remove_all(folder);
-  if (is_there(options.output) && goes_on) {
-    const ResultDescription stored = describe_shard(options.output);
-    const auto differs = difference(describe(plan, options.provenance), stored, options.output);
-    if (differs) throw StudyError(*differs);
-    return false;
+/// Says that the work replaces a result that is there, where a later session goes on.
+fs::path replaces_in(const fs::path& folder) { return folder / "replaces"; }
+fs::path lock_in(const fs::path& folder) { return folder / "lock"; }
+
+/// Removes what a study wrote into the folder, and the folder if nothing else is in it.
+void remove_work(const fs::path& folder) {
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    const bool is_ours = name.starts_with("group_") || name.starts_with("rows_") ||
+                         entry.path() == replaces_in(folder) || entry.path() == lock_in(folder);
+    if (is_ours) fs::remove_all(entry.path());
   }
-  if (!options.force) expect_free(options.output);
-  if (is_there(folder) && !goes_on) {
+  if (fs::is_empty(folder)) fs::remove(folder);
+}
+
+/// Throws StudyError if a finished result is not that of this plan.
+void expect_result_of(const StudyPlan& plan, const RunOptions& options) {
+  const ResultDescription stored = describe_shard(options.output);
+  const auto differs = difference(describe(plan, options.provenance), stored, options.output);
+  if (differs) throw StudyError(*differs);
+  if (stored.sums && stored.sums->first_run == plan.first_run &&
+      stored.sums->last_run == plan.last_run)
+    return;
+  throw StudyError(options.output.string() +
+                   ": holds other runs than those to be computed: choose another output");
+}
+
+/// Begins or continues the work in the folder, which only one process may do at a time. Returns its
+/// lock, or nullopt if the result is complete already.
+std::optional<PosixFile> open_work(const fs::path& folder, const StudyPlan& plan,
+                                   const RunOptions& options) {
+  const bool goes_on = options.resume || options.attempt, has_work = is_there(folder);
+  if (!has_work && goes_on && is_there(options.output)) {
+    expect_result_of(plan, options);
+    return std::nullopt;
+  }
+  if (has_work && !goes_on && !options.force) {
     throw StudyError(folder.string() +
                      ": holds unfinished work: continue it with --resume, or start afresh with "
                      "--force");
   }
-  fs::create_directories(folder);
-  return true;
+  if (!options.force && !is_there(replaces_in(folder))) expect_free(options.output);
+  fs::create_directory(folder);
+  PosixFile lock(lock_in(folder), PosixFile::Mode::create);
+  lock.lock();
+  if (options.force) {
+    for (const auto& entry : fs::directory_iterator(folder)) {
+      const std::string name = entry.path().filename().string();
+      if (name.starts_with("group_") || name.starts_with("rows_")) fs::remove(entry.path());
+    }
+    PosixFile(replaces_in(folder), PosixFile::Mode::create);
+  }
+  return lock;
 }
 
 }  // namespace
@@ -124,7 +168,8 @@ RunOutcome run_summed_study(const StudyPlan& plan, const RunOptions& options) {
   const Clock clock;
   const fs::path folder = groups_of(options.output);
   RunOutcome outcome;
-  if (!open_work(folder, plan, options)) {
+  const std::optional<PosixFile> lock = open_work(folder, plan, options);
+  if (!lock) {
     outcome.counts = counts_in(options.output);
     return outcome;
   }
@@ -133,9 +178,12 @@ RunOutcome run_summed_study(const StudyPlan& plan, const RunOptions& options) {
     const StudyPlan group = group_of(plan, run);
     std::optional<double> left = options.time_budget;
     if (left) *left -= clock.seconds();
-    outcome.stopped = run_group(group, folder, options, left, outcome.runs_here);
+    const RunOutcome part = run_group(group, folder, options, left);
+    outcome.stopped = part.stopped;
+    outcome.runs_here += part.runs_here;
     if (outcome.stopped != StopReason::complete) {
-      outcome.counts.missing = (plan.last_run - run) * plan.cells.size();
+      outcome.counts.missing =
+          part.counts.missing + (plan.last_run - group.last_run) * plan.cells.size();
       break;
     }
     groups.push_back(file_in(folder, "group", run));
@@ -144,8 +192,8 @@ RunOutcome run_summed_study(const StudyPlan& plan, const RunOptions& options) {
   outcome.seconds = clock.seconds();
   if (outcome.stopped != StopReason::complete) return outcome;
   merge_groups(options.output, groups, plan.first_run, plan.last_run,
-               options.force ? Existing::replace : Existing::refuse);
-  fs::remove_all(folder);
+               is_there(replaces_in(folder)) ? Existing::replace : Existing::refuse);
+  remove_work(folder);
   outcome.counts = counts_in(options.output);
   return outcome;
 }
@@ -156,7 +204,7 @@ std::vector<NewGroup> computed_group(const StudyPlan& plan, std::uint64_t first_
   options.output = file_in(folder, "rows", first_run);
   options.parallel = parallel;
   options.quiet = true;
-  fs::create_directories(folder);
+  fs::create_directory(folder);
   const RunOutcome outcome = run_study(group_of(plan, first_run), options);
   std::vector<NewGroup> sums;
   if (outcome.counts.missing == 0) sums = sums_to_store(ResultFile(options.output), parallel);

@@ -131,6 +131,29 @@ TEST_F(SlowSummedStudy, IsResumedAfterItWasStoppedOrKilled) {
   EXPECT_FALSE(exists("out.h5.groups"));
 }
 
+TEST_F(SlowSummedStudy, IsNotTakenForAnotherThatIsThere) {
+  ASSERT_EQ(run("whole.h5").code, 0);
+  ASSERT_EQ(run("out.h5", {"--set", "study.seed=5"}).code, 0);
+  EXPECT_EQ(run("out.h5", {"--force", "--time-budget", "0.01"}).code, 85);
+  EXPECT_EQ(run("out.h5", {"--resume"}).code, 0);
+  EXPECT_EQ(words_of("out.h5"), words_of("whole.h5"));
+  ASSERT_EQ(run("part.h5", {"--runs", "0:4096"}).code, 0);
+  expect_refused({"run", "blink.ini", "-o", "part.h5", "--resume"}, "other runs");
+}
+
+TEST_F(SlowSummedStudy, ComputesADamagedGroupAgainAndLeavesForeignFiles) {
+  ASSERT_EQ(run("whole.h5").code, 0);
+  ASSERT_EQ(run("group.h5", {"--runs", "0:4096"}).code, 0);
+  std::filesystem::create_directory(folder_ / "out.h5.groups");
+  std::string text = text_of("group.h5");
+  text[text.size() / 2] ^= 1;
+  write("out.h5.groups/group_0.h5", text);
+  write("out.h5.groups/thesis.txt", "mine");
+  EXPECT_EQ(run("out.h5", {"--resume"}).code, 0);
+  EXPECT_EQ(words_of("out.h5"), words_of("whole.h5"));
+  EXPECT_EQ(text_of("out.h5.groups/thesis.txt"), "mine");
+}
+
 TEST_F(SlowSummedStudy, IsRefusedWithAFlippedByte) {
   ASSERT_EQ(run("out.h5", {"--runs", "0:4096"}).code, 0);
   const ResultFile file(folder_ / "out.h5");
