@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <ranges>
 #include <sstream>
 
 namespace montecarta::experiments {
@@ -169,10 +168,14 @@ std::string checked_value(const Parameter& option, std::string_view text,
 namespace {
 
 const Setting& known_setting(const IniEntry& entry) {
-  const auto is_here = [&](const Setting& setting) { return setting.section == entry.section; };
-  return item_called(entry.key, study_settings() | std::views::filter(is_here), &Setting::key,
-                     entry.place + ": unknown key " + entry.section + "." + entry.key +
-                         " (it would have no effect)");
+  std::vector<const Setting*> here;
+  for (const Setting& setting : study_settings()) {
+    if (setting.section == entry.section) here.push_back(&setting);
+  }
+  const auto key_of = [](const Setting* setting) { return setting->key; };
+  return *item_called(entry.key, here, key_of,
+                      entry.place + ": unknown key " + entry.section + "." + entry.key +
+                          " (it would have no effect)");
 }
 
 [[noreturn]] void throw_out_of_place(const Setting& setting, const std::string& kind,

@@ -344,8 +344,8 @@ std::string which_run(const ResultFile& file, const Replay& replay) {
   const std::string reason = chosen_run(file, {}) != index
                                  ? prose("replay", "chosen")
                                  : prose("replay", "first", {{"cells", which}});
-  const std::string words = prose(
-      "replay", "one run", {{"run", run}, {"runs", std::to_string(runs)}, {"reason", reason}});
+  std::string words = prose("replay", "one run",
+                            {{"run", run}, {"runs", std::to_string(runs)}, {"reason", reason}});
   if (index >= file.description().full_runs_here()) return words;
   return words + " " +
          prose("replay", "full runs", {{"runs", std::to_string(file.description().full_runs)}});
