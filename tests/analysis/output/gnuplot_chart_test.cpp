@@ -44,7 +44,7 @@ TEST(GnuplotChart, HasOneLegendOfAllThatAnyPanelHolds) {
   EXPECT_THAT(commands, ContainsRegex("keyentry with lines [^\n]*title 'one'"));
   EXPECT_THAT(commands, ContainsRegex("keyentry with lines [^\n]*title 'two'"));
   EXPECT_THAT(commands, ContainsRegex("keyentry with filledcurves [^\n]*title 'right'"));
-  EXPECT_THAT(commands, HasSubstr("set yrange [1:1e+06]"));
+  EXPECT_THAT(commands, HasSubstr("set yrange [1:1000000]"));
   EXPECT_THAT(commands, HasSubstr("set format y '10^{%T}'"));
   EXPECT_THAT(commands, HasSubstr("set yrange [0:3.15"));
   EXPECT_THAT(commands, HasSubstr("set xlabel 'time [s]'"));

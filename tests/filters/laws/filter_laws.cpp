@@ -140,7 +140,7 @@ std::vector<ToldBits> told_at_every_step(SlamFilter& filter, std::size_t particl
 }
 
 TEST_P(EveryFilter, GivesTheSameBitsOnAnyNumberOfThreads) {
-  const SmallWorldSettings settings{.scans = 4};
+  const SmallWorldSettings settings{.scans = 3};
   const SmallWorld world = small_world(settings);
   // More than two tasks, those of a step and of sums included; a plain filter has but one.
   const std::size_t particles = GetParam().name.starts_with("plain_") ? 50 : 2100;
@@ -149,10 +149,8 @@ TEST_P(EveryFilter, GivesTheSameBitsOnAnyNumberOfThreads) {
     const auto filter = make_default(GetParam(), particles, settings, association);
     const auto alone = told_at_every_step(*filter, n, world, Parallel(Backend::serial, 1));
     for (const Backend backend : {Backend::tbb, Backend::openmp}) {
-      for (const int threads : {1, 3}) {
-        const auto bits = told_at_every_step(*filter, n, world, Parallel(backend, threads));
-        EXPECT_TRUE(bits == alone) << threads << " threads";
-      }
+      const auto bits = told_at_every_step(*filter, n, world, Parallel(backend, 3));
+      EXPECT_TRUE(bits == alone) << (backend == Backend::tbb ? "TBB" : "OpenMP");
     }
   }
 }
