@@ -111,6 +111,12 @@ template <class Number>
 void RunReader::read_scans(std::string_view column, std::size_t width, std::size_t i,
                            std::vector<Number>& out) const {
   if (!has(column, i)) return out.clear();
+  if (cell_->find(column)->axes.front() != engine::Axis::scan) {
+    throw StudyError(file_->path().string() + ": cells/" + cell_->label + "/" +
+                     std::string(column) +
+                     " has other axes than it should (the file is damaged): take a copy that is "
+                     "whole, or run the study again");
+  }
   out.resize(file_->scan_times().size() * width);
   file_->read(*cell_, column, i, std::span(out));
   out.resize(scans_of(i) * width);

@@ -138,11 +138,10 @@ void expect_group(const SumGroup& group, const ReadGroup& read) {
   const auto count = [&](RunStatus status) {
     return static_cast<std::uint64_t>(std::ranges::count(read.runs.status, status));
   };
-  if (read.runs.status.size() == group.runs && count(RunStatus::complete) == group.complete &&
+  SumReader::expect(
+      read.runs.status.size() == group.runs && count(RunStatus::complete) == group.complete &&
       count(RunStatus::failed) == group.failed && read.runs.failures.size() == group.failed &&
-      read.sums.scores().runs() == group.complete)
-    return;
-  throw StudyError("its sums are damaged: take a copy that is whole, or run the study again");
+      read.sums.scores().runs() == group.complete);
 }
 
 ReadGroup read_group(const ResultFile& file, const SumGroup& group, const RunCriteria& criteria) {
@@ -169,7 +168,7 @@ void take_runs(const SumGroup& group, const RunsOfGroup& runs, StoredSums& all) 
     if (runs.status[i] == RunStatus::complete) {
       all.complete.push_back(run);
     } else {
-      const RunsOfGroup::Failure& failure = runs.failures.at(failed++);
+      const RunsOfGroup::Failure& failure = runs.failures[failed++];
       all.failures.push_back({run, failure.step, text_of(failure.reason)});
     }
   }

@@ -55,16 +55,13 @@ Words packed(std::span<const std::uint64_t> words) {
 }
 
 Words unpacked(std::span<const std::uint64_t> words) {
-  const auto expect = [](bool condition) {
-    if (!condition)
-      throw StudyError("its sums are damaged: take a copy that is whole, or run the study again");
-  };
   Words all;
   while (!words.empty()) {
     const bool is_repetition = words.front() % 2 == 1;
     const std::uint64_t length = words.front() / 2;
     words = words.subspan(1);
-    expect(length <= kMostWords - all.size() && words.size() >= (is_repetition ? 1 : length));
+    SumReader::expect(length <= kMostWords - all.size() &&
+                      words.size() >= (is_repetition ? 1 : length));
     if (is_repetition) {
       all.insert(all.end(), length, words.front());
       words = words.subspan(1);

@@ -130,8 +130,6 @@ ResultDescription describe(const StudyPlan& plan, const TextPairs& provenance) {
 
 namespace {
 
-constexpr std::array kBookkeeping = {"status", "failure_reason", "failure_step", "fingerprint"};
-
 void expect_result_file(const h5::Handle& file, const std::filesystem::path& path) {
   if (h5::find_text(file, "filetype") != std::string(format::kFiletype)) {
     throw StudyError(
@@ -169,7 +167,7 @@ std::optional<std::vector<Axis>> axes_of(const std::string& dimension_order,
 /// datasets.
 std::optional<Column> column_of(const h5::Handle& group, const std::string& name,
                                 std::string_view run_axis, std::size_t runs) {
-  if (std::ranges::find(kBookkeeping, name) != kBookkeeping.end()) return std::nullopt;
+  if (std::ranges::count(format::kBesideColumns, name) > 0) return std::nullopt;
   const h5::Handle dataset = h5::open_dataset(group, name);
   const auto axes = axes_of(h5::find_text(dataset, "dimension_order").value_or(""), run_axis);
   const auto element = h5::element(dataset);

@@ -6,6 +6,7 @@
 #include "engine/records/result_description.hpp"
 #include "engine/records/run_record.hpp"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -108,6 +109,9 @@ inline constexpr const char* kSumSeconds = "sums_cpu_seconds";
 inline constexpr const char* kFull = "full";  ///< group of a cell for the columns of full runs only
 inline constexpr const char* kFullRun = "full_run";    ///< first axis of those columns
 inline constexpr const char* kFullRuns = "full_runs";  ///< attribute: their number in the study
+/// Members of the group of a cell that are no columns.
+inline constexpr std::array<std::string_view, 6> kBesideColumns = {
+    "status", "failure_reason", "failure_step", "fingerprint", kFull, "settings"};
 /// Fact in /provenance: --force was given, so finishing may replace the file with the final name.
 inline constexpr std::string_view kReplaces = "replaces";
 }  // namespace format

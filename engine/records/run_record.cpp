@@ -3,6 +3,7 @@
 
 #include "engine/errors.hpp"
 #include "engine/records/fingerprint.hpp"
+#include "engine/records/result_layout.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -21,13 +22,20 @@ Column column_of(const ColumnKind& kind, const Cell& cell) {
   return column;
 }
 
-/// Throws StudyError if a column that a filter declares has the name of another one.
+/// Throws StudyError if a column that a filter declares has the name of something else in the group
+/// of its cell, or belongs to no group of columns.
 void expect_new(const OwnColumn& own, const std::vector<std::string>& declared, const Cell& cell) {
-  if (std::ranges::count(column_table(), own.name, &ColumnKind::name) == 0 &&
-      std::ranges::count(declared, own.name) == 0)
-    return;
-  throw StudyError("filter " + cell.filter + ": its column " + own.name +
-                   " (there is one already): give it another name in Capabilities::own_columns");
+  const auto refuse = [&](const std::string& problem) {
+    throw StudyError("filter " + cell.filter + ": its column " + own.name + " " + problem +
+                     " in Capabilities::own_columns");
+  };
+  if (std::ranges::count(column_table(), own.name, &ColumnKind::name) > 0 ||
+      std::ranges::count(format::kBesideColumns, own.name) > 0 ||
+      std::ranges::count(declared, own.name) > 0 || own.name.find('/') != std::string::npos)
+    refuse("(there is one already, or it has a slash): give it another name");
+  if (std::ranges::count(column_groups(), own.group, &ColumnGroup::name) == 0)
+    refuse("is of the group " + own.group +
+           " (montecarta list columns has no such group): give it another group");
 }
 
 }  // namespace

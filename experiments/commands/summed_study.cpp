@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <memory>
 
 namespace montecarta::experiments {
 namespace {
@@ -46,12 +47,19 @@ void remove_rows(const fs::path& rows) {
   fs::remove(part_of(rows));
 }
 
-/// Throws StudyError if a run or the seal of the file is damaged.
-void expect_whole_file(const fs::path& path) {
+/// The description of a finished group. Throws StudyError if a byte of it is damaged.
+ResultDescription description_of_group(const fs::path& path) {
   const ResultFile file(path);
-  for (std::size_t i = 0; i < file.runs().size(); ++i) {
-    for (const StoredCell& cell : file.cells()) file.expect_whole(cell, i);
+  for (const StoredCell& cell : file.cells()) {
+    if (file.has_sums()) file.sum_groups(cell);  // refuses a file without its seal
+    for (std::size_t i = 0; i < file.runs().size(); ++i) file.expect_whole(cell, i);
   }
+  return file.description();
+}
+
+bool is_of_runs(const ResultDescription& stored, const StudyPlan& plan) {
+  return stored.sums && stored.sums->first_run == plan.first_run &&
+         stored.sums->last_run == plan.last_run;
 }
 
 /// Whether the file is the finished group of this plan; a damaged one is computed again. Throws
@@ -60,15 +68,13 @@ bool is_finished(const fs::path& path, const StudyPlan& group, const TextPairs& 
   if (!is_there(path)) return false;
   ResultDescription stored;
   try {
-    expect_whole_file(path);
-    stored = describe_shard(path);
+    stored = description_of_group(path);
   } catch (const std::runtime_error&) {
     return false;
   }
   if (const auto differs = difference(describe(group, provenance), stored, path))
     throw StudyError(*differs + ", or begin anew with --force");
-  return stored.sums && stored.sums->first_run == group.first_run &&
-         stored.sums->last_run == group.last_run;
+  return is_of_runs(stored, group);
 }
 
 RunCounts counts_in(const fs::path& path) {
@@ -105,18 +111,23 @@ void show_progress(const StudyPlan& plan, std::uint64_t done, double seconds,
                static_cast<unsigned long long>(plan.runs_here()), seconds);
 }
 
-/// Says that the work replaces a result that is there, where a later session goes on.
+/// A file that says that the work replaces a result, which a later session must know.
 fs::path replaces_in(const fs::path& folder) { return folder / "replaces"; }
 fs::path lock_in(const fs::path& folder) { return folder / "lock"; }
 
-/// Removes what a study wrote into the folder, and the folder if nothing else is in it.
-void remove_work(const fs::path& folder) {
+/// Removes the runs and groups in the folder, and leaves other files.
+void remove_groups(const fs::path& folder) {
   for (const auto& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
-    const bool is_ours = name.starts_with("group_") || name.starts_with("rows_") ||
-                         entry.path() == replaces_in(folder) || entry.path() == lock_in(folder);
-    if (is_ours) fs::remove_all(entry.path());
+    if (name.starts_with("group_") || name.starts_with("rows_")) fs::remove(entry.path());
   }
+}
+
+/// Removes the finished work, and the folder if nothing else is in it.
+void remove_work(const fs::path& folder) {
+  remove_groups(folder);
+  fs::remove(replaces_in(folder));
+  fs::remove(lock_in(folder));
   if (fs::is_empty(folder)) fs::remove(folder);
 }
 
@@ -125,9 +136,7 @@ void expect_result_of(const StudyPlan& plan, const RunOptions& options) {
   const ResultDescription stored = describe_shard(options.output);
   const auto differs = difference(describe(plan, options.provenance), stored, options.output);
   if (differs) throw StudyError(*differs);
-  if (stored.sums && stored.sums->first_run == plan.first_run &&
-      stored.sums->last_run == plan.last_run)
-    return;
+  if (is_of_runs(stored, plan)) return;
   throw StudyError(options.output.string() +
                    ": holds other runs than those to be computed: choose another output");
 }
@@ -151,10 +160,7 @@ std::optional<PosixFile> open_work(const fs::path& folder, const StudyPlan& plan
   PosixFile lock(lock_in(folder), PosixFile::Mode::create);
   lock.lock();
   if (options.force) {
-    for (const auto& entry : fs::directory_iterator(folder)) {
-      const std::string name = entry.path().filename().string();
-      if (name.starts_with("group_") || name.starts_with("rows_")) fs::remove(entry.path());
-    }
+    remove_groups(folder);
     PosixFile(replaces_in(folder), PosixFile::Mode::create);
   }
   return lock;
@@ -205,10 +211,11 @@ std::vector<NewGroup> computed_group(const StudyPlan& plan, std::uint64_t first_
   options.parallel = parallel;
   options.quiet = true;
   fs::create_directory(folder);
+  const std::unique_ptr<const fs::path, void (*)(const fs::path*)> removed(
+      &folder, [](const fs::path* made) { fs::remove_all(*made); });
   const RunOutcome outcome = run_study(group_of(plan, first_run), options);
   std::vector<NewGroup> sums;
   if (outcome.counts.missing == 0) sums = sums_to_store(ResultFile(options.output), parallel);
-  fs::remove_all(folder);
   if (sums.empty()) throw RunError(folder.string() + ": interrupted: call it again");
   return sums;
 }

@@ -46,6 +46,18 @@ TEST_F(RunsInFull, GiveAnAnalysisWhatEveryRunHas) {
   }
 }
 
+/// The checks of a file know its columns, but not those that a filter declares.
+TEST_F(RunsInFull, AreRefusedIfAScansColumnHasOtherAxes) {
+  const StoredCell& cell = file.cells()[0];
+  const engine::Column* nis = cell.find("nis");
+  ASSERT_NE(nis, nullptr);
+  const_cast<engine::Column*>(nis)->axes = {engine::Axis::time};  // in a file without its seal
+  RunRows rows;
+  RunReader::Scratch scratch;
+  EXPECT_THAT([&] { RunReader(file, cell).read(0, rows, scratch); },
+              testing::ThrowsMessage<StudyError>(HasSubstr("nis has other axes")));
+}
+
 TEST_F(RunsInFull, GiveAFigureOfOneRunAllThatIsThere) {
   const StoredCell& cell = file.cells()[0];
   const std::size_t scans = file.scan_times().size();

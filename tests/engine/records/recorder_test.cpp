@@ -161,12 +161,15 @@ TEST(Recorder, RefusesOtherValuesThanTheFilterDeclares) {
 }
 
 TEST(RecordLayout, RefusesAnOwnColumnWithTheNameOfAnother) {
-  for (const char* name : {"nis", "seen"}) {
+  for (const char* name : {"nis", "seen", "status", "full", "a/b"}) {
     StudyPlan plan = plan_with_own_columns(2);
     plan.cells[0].reports.own_columns[1].name = name;
     EXPECT_THAT(complaint_of([&] { layout_of(plan); }),
-                HasSubstr("its column " + std::string(name) + " (there is one already)"));
+                HasSubstr("its column " + std::string(name) + " (there is one already"));
   }
+  StudyPlan plan = plan_with_own_columns(2);
+  plan.cells[0].reports.own_columns[1].group = "speed";
+  EXPECT_THAT(complaint_of([&] { layout_of(plan); }), HasSubstr("is of the group speed"));
 }
 
 TEST(JointScans, AreTheLastOfEqualParts) {
