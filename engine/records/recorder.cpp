@@ -114,7 +114,12 @@ const PoseEstimate* Recorder::record_pose(const SlamFilter& filter, std::size_t 
   estimate_ = filter.estimate();
   copy(estimate_.spread.mean, row_of(columns_.pose_mean, row, 3));
   copy<3>(estimate_.spread.covariance, row_of(columns_.pose_covariance, row, 9));
-  if (!estimate_.mixture) return &estimate_;
+  if (!estimate_.mixture) {
+    if (!columns_.pose_mean_mixture.empty())
+      throw StudyError(
+          "the filter declares a mixture and its estimate has none: clear Capabilities::mixture");
+    return &estimate_;
+  }
   copy(estimate_.mixture->mean, row_of(columns_.pose_mean_mixture, row, 3));
   copy<3>(estimate_.mixture->covariance, row_of(columns_.pose_covariance_mixture, row, 9));
   return &estimate_;

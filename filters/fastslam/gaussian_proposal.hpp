@@ -67,8 +67,8 @@ class RefinedCloud {
       return estimate;
     }
     if (!moments_) moments_.emplace(context, weights, poses);
-    PoseEstimate estimate = moments_->moved_by(motion_);
-    if (!has_mixture) estimate.mixture.reset();
+    PoseEstimate estimate{moments_->moved_by(motion_), std::nullopt};
+    if (has_mixture) estimate.mixture = estimate.spread;
     return estimate;
   }
 

@@ -195,7 +195,7 @@ template <class Real>
 PoseEstimate MarginalFilter<Real>::estimate() const {
   if (is_drawn_) return {spread_of(now_, weights(), poses_), std::nullopt};
   if (!moments_) moments_.emplace(now_, weights(), poses_);
-  return {moments_->moved_by(motion_).mixture.value(), std::nullopt};
+  return {moments_->moved_by(motion_), std::nullopt};
 }
 
 template <class Real>

@@ -85,11 +85,11 @@ PoseMoments mixture_moments(const std::vector<Weighted>& particles, const Mean& 
   return moments;
 }
 
-/// Mean and spread of the poses.
+/// Mean and spread of the poses, with the covariance that particles have until they are drawn.
 inline PoseMoments spread_of(const std::vector<Particle>& particles) {
   return mixture_moments(
       particles, [](const Particle& p) { return p.pose; },
-      [](const Particle&) { return Matrix<3>::Zero(); });
+      [](const Particle& p) { return p.covariance; });
 }
 
 /// The innovation of one detection for the mixture of all particles that use it: the weighted mean

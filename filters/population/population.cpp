@@ -9,7 +9,7 @@ const std::vector<std::string> kResamplings{"systematic", "stratified", "residua
 
 }  // namespace
 
-PoseEstimate CloudMoments::moved_by(const MotionIncrement& increment) const {
+PoseMoments CloudMoments::moved_by(const MotionIncrement& increment) const {
   const Pose& step = increment.pose();
   const Point way = in_world(ahead_, step.x, step.y);  // displacement at the mean heading
   const Point mean_way = in_world(turn_, way.x, way.y);
@@ -39,7 +39,7 @@ PoseEstimate CloudMoments::moved_by(const MotionIncrement& increment) const {
                                .xh = along.x,
                                .yh = along.y,
                                .hh = P.hh};
-  return {{mean, symmetric(spread)}, PoseMoments{mean, symmetric(spread + own)}};
+  return {mean, symmetric(spread + own)};
 }
 
 std::vector<Parameter> population_options() {

@@ -140,8 +140,8 @@ class CloudMoments {
     c_ = {cc - c * c, cs - c * s}, s_ = {cs - c * s, ss - s * s};
   }
 
-  /// The estimate after the cloud moved by `increment`.
-  PoseEstimate moved_by(const MotionIncrement& increment) const;
+  /// The moments after the cloud moved by `increment`, whose covariance each particle then has.
+  PoseMoments moved_by(const MotionIncrement& increment) const;
 
  private:
   Pose mean_;

@@ -34,6 +34,7 @@ class ScriptedFilter : public SlamFilter {
     std::optional<Mishap> mishap{};
     std::chrono::microseconds pace{0};  ///< pause at every step
     std::size_t own_values = 0;         ///< number of values in ScanReport::own
+    bool has_mixture = true;
   };
 
   explicit ScriptedFilter(Script script)
@@ -81,7 +82,7 @@ class ScriptedFilter : public SlamFilter {
     estimate.spread.mean.heading = particles_.front().heading;
     estimate.spread.covariance = Eigen::Matrix3d::Identity();
     if (broken_) break_estimate(estimate.spread);
-    estimate.mixture = estimate.spread;
+    if (script_.has_mixture) estimate.mixture = estimate.spread;
     return estimate;
   }
 

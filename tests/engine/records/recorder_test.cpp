@@ -160,6 +160,15 @@ TEST(Recorder, RefusesOtherValuesThanTheFilterDeclares) {
               HasSubstr("reports 1 values of its own (it declares 2)"));
 }
 
+TEST(Recorder, RefusesAnEstimateWithoutTheMixtureThatTheFilterDeclares) {
+  StudyPlan plan = small_result_plan();
+  plan.cells[0] = scripted_cell("none", {.has_mixture = false});
+  plan.cells[0].reports.mixture = false;
+  EXPECT_TRUE(std::isfinite(FilledRecord(plan, 0, 0).column<double>("pose_mean")[0]));
+  plan.cells[0].reports.mixture = true;
+  EXPECT_THAT(complaint_of([&] { FilledRecord(plan, 0, 0); }), HasSubstr("declares a mixture"));
+}
+
 TEST(RecordLayout, RefusesAnOwnColumnWithTheNameOfAnother) {
   for (const char* name : {"nis", "seen", "status", "full", "a/b"}) {
     StudyPlan plan = plan_with_own_columns(2);

@@ -44,17 +44,20 @@ TEST_P(PlainFastSlam, EveryFormBeatsDeadReckoning) {
 INSTANTIATE_TEST_SUITE_P(KnownAndNearest, PlainFastSlam,
                          ::testing::Values(Association::known, Association::nearest));
 
-TEST(PlainFastSlam2, AScanOfNothingLeavesTheParticlesUndrawn) {
-  const auto filter = make_plain({.filter = "fastslam2", .particles = 30}, {});
-  const StepContext context(1, 0, 0, Parallel::serial());
-  filter->start({});
-  filter->predict(context, {3.0, 0.1}, 0.025);
-  const PoseEstimate before = filter->estimate();
-  filter->update(context, {});
-  EXPECT_GT(before.mixture->covariance.norm(), 0.0);
-  EXPECT_EQ(filter->estimate().mixture->covariance, before.mixture->covariance);
-  EXPECT_EQ(filter->estimate().spread.covariance, before.spread.covariance);
-  EXPECT_NEAR(filter->report().ess, 30.0, 1e-9);
+TEST(FastSlam2, AScanOfNothingLeavesTheParticlesUndrawnAndTheirCovarianceInTheEstimate) {
+  for (const std::string prefix : {"", "plain_"}) {
+    const Variant variant{.filter = "fastslam2", .particles = 30};
+    const auto filter = kind_of({prefix + variant.filter}).make(setup_of(variant, {}));
+    const StepContext context(1, 0, 0, Parallel::serial());
+    filter->start({});
+    filter->predict(context, {3.0, 0.1}, 0.025);
+    const PoseEstimate before = filter->estimate();
+    filter->update(context, {});
+    EXPECT_GT(before.mixture->covariance.diagonal().minCoeff(), 0.0) << prefix;
+    EXPECT_EQ(filter->estimate().mixture->covariance, before.mixture->covariance) << prefix;
+    EXPECT_EQ(filter->estimate().spread.covariance, before.mixture->covariance) << prefix;
+    EXPECT_NEAR(filter->report().ess, 30.0, 1e-9) << prefix;
+  }
 }
 
 }  // namespace
