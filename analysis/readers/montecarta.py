@@ -41,6 +41,9 @@ class Results:
             self._settings = {label: _plain(cell["settings"].attrs)
                               for label, cell in file["cells"].items()}
 
+    def __iter__(self):
+        return iter(self.labels)
+
     def __getitem__(self, label):
         """One cell as an xarray.Dataset: every dataset of it, `truth` and `truth_*` where true
         paths are stored, `scan_row`; coordinates run, time [s], scan [s], component (x, y,

@@ -8,8 +8,9 @@
 namespace montecarta::filters::plain {
 
 /// FastSLAM II (EQUATIONS 6; Montemerlo et al. 2003): the scan refines the Gaussian of the pose
-/// before the pose is drawn. Filters with other Gaussians replace move_gaussian(), update_with(),
-/// innovation() and the two functions that keep landmarks.
+/// before the pose is drawn. UFastSlam and Srcd have other Gaussians: they replace move_gaussian(),
+/// update_with(), innovation() and the two functions that keep landmarks. A change of
+/// weigh_and_draw() changes them too.
 class FastSlam2 : public FastSlam {
  public:
   explicit FastSlam2(const FilterSetup& setup)
@@ -30,7 +31,7 @@ class FastSlam2 : public FastSlam {
       : FastSlam(setup), weights_(std::move(weights)) {}
 
   /// Returns whether the weights are those of the drawn poses, so that there is no mixture
-  /// (EQUATIONS 19).
+  /// (EQUATIONS 19). FilterKind::reports.mixture must say the same, else the runs fail.
   virtual bool weighs_draws() const { return weights_ == "ratio"; }
 
   /// Moves (p.pose, p.covariance) by one step.

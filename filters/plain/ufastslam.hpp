@@ -7,9 +7,10 @@
 namespace montecarta::filters::plain {
 
 /// U-FastSLAM (EQUATIONS 7; Kim et al. 2008): FastSLAM II with the unscented transform at every
-/// stage. The vectors of motion and pose include the noise of the sensor, as in the paper; for a
-/// car they have its seven dimensions, in which the landmark takes the place of the control noise.
-/// Landmarks have five points of two dimensions.
+/// stage. It replaces the Gaussians and leaves the weight as it is: FastSlam2::refine() sums the
+/// densities of the innovations that update_with() returns. Motion has points of pose, controls and
+/// sensor noise, an observation has points of pose, landmark and sensor noise: seven dimensions for
+/// a car, as in the paper. Landmarks have five points of two dimensions.
 class UFastSlam : public FastSlam2 {
  public:
   explicit UFastSlam(const FilterSetup& setup)
@@ -18,7 +19,7 @@ class UFastSlam : public FastSlam2 {
                   setup.options.number("kappa")},
         augmented_(landmark_),
         map_uncertainty_(setup.options.choice("map_uncertainty") == "on") {
-    // The points are as far as those of the five dimensions of EQUATIONS 7.
+    // 7 + (kappa - 2) = 5 + kappa: the points are as far as those of five dimensions (EQUATIONS 7).
     augmented_.kappa -= 2.0;
   }
 
