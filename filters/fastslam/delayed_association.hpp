@@ -24,7 +24,7 @@ class InitialisationOnPaths {
   InitialisationOnPaths(std::size_t particles, const Belief& belief)
       : particles_(particles),
         mounting_(belief.sensor.mounting),
-        sightings_(belief.sensor, SensorNoise::of(belief).range),
+        sightings_(belief.sensor, SensorNoise::of(belief).first),
         waiting_(belief.sensor),
         sensors_(particles) {}
 

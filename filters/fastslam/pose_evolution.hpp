@@ -49,7 +49,7 @@ class PoseFitness {
     for (const MatchedDetection<Real>& one : scan) {
       const Measurement<Real> nu = residual(one.seen, line_of_sight(pose, one.landmark.mean));
       sum += one.matched *
-             (nu.first * nu.first / noise_.range + nu.second * nu.second / noise_.bearing);
+             (nu.first * nu.first / noise_.first + nu.second * nu.second / noise_.second);
     }
     return -0.5 * sum;
   }
@@ -63,8 +63,8 @@ class PoseFitness {
       const auto use = one.matched > Real(0.5) && is_usable(s);
       const Turned<Real> map = turned(one.landmark.covariance, s);
       const auto [r, b] = residual(one.seen, s);
-      const Symmetric2<Real> S{noise_.range + map.along, map.cross * s.per_range,
-                               noise_.bearing + map.across * s.per_range * s.per_range};
+      const Symmetric2<Real> S{noise_.first + map.along, map.cross * s.per_range,
+                               noise_.second + map.across * s.per_range * s.per_range};
       const Real determinant = S.determinant(), squared = S.adjugate_form(r, b) / determinant;
       evidence.add(select(use, squared, Real(0.0)), select(use, determinant, Real(1.0)),
                    as_number<Real>(use), one.matched);

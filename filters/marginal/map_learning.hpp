@@ -35,8 +35,8 @@ class LandmarkEvidence {
     weights_ = &weights;
     objective_ = objective;
     range_ = seen.range;
-    per_range_noise_ = 1.0 / noise.range;
-    per_bearing_noise_ = 1.0 / noise.bearing;
+    per_range_noise_ = 1.0 / noise.first;
+    per_bearing_noise_ = 1.0 / noise.second;
     rays_.resize(poses.size());
     terms_.resize(poses.size());
     for (std::size_t b = 0; b < poses.size(); ++b) {
@@ -244,7 +244,7 @@ class MapLearning {
                       const RangeBearing<double>& seen) {
     const Direction<double> ahead = direction_of(heading);
     const double half =
-        3.0 * std::max(std::sqrt(noise_.range), seen.range * std::sqrt(noise_.bearing));
+        3.0 * std::max(std::sqrt(noise_.first), seen.range * std::sqrt(noise_.second));
     const auto place = [&](const Offset& o) {
       return Point{prior_.mean.x + ahead.cosine * o[0] - ahead.sine * o[1],
                    prior_.mean.y + ahead.sine * o[0] + ahead.cosine * o[1]};

@@ -6,11 +6,11 @@
 
 namespace montecarta::filters {
 
-/// The believed variances of the components of a detection, under the names of those of range [m^2]
-/// and bearing [rad^2]. The variance of a component that the sensor does not have is 1.
+/// The believed variances of the components of a Measurement [m^2] or [rad^2]. The variance of a
+/// component that the sensor does not have is 1.
 struct SensorNoise {
-  double range;
-  double bearing;
+  double first;
+  double second;
 
   static SensorNoise of(const Belief& belief) {
     const Eigen::Vector2d sigma = deviations_of(belief.sensor, belief);

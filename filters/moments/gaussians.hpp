@@ -85,7 +85,7 @@ template <class Real>
       P.xx + x * P.xh + x * xh, P.xy + y * P.xh + x * yh, P.yy + y * P.yh + y * yh, xh, yh, P.hh};
 }
 
-/// A symmetric matrix over (x, y) [m^2] or over (range, bearing).
+/// A symmetric matrix over (x, y) [m^2] or over the components of a Measurement.
 template <class Real>
 struct Symmetric2 {
   Real xx{}, xy{}, yy{};

@@ -72,13 +72,12 @@ template <class Real>
   return s.predicted.range > Real(kLeastDistance);
 }
 
-/// The innovation of a detection for a pose Gaussian (EQUATIONS 6): its value, its covariance S,
-/// and the columns of P Hx' with Hx = [-ux -uy 0; uy/d -ux/d -1].
+/// The innovation of a detection for a pose Gaussian (EQUATIONS 6).
 template <class Real>
 struct Innovation {
   Measurement<Real> value;
-  Symmetric2<Real> S;  ///< over (range, bearing)
-  Column3<Real> range{}, bearing{};
+  Symmetric2<Real> S;               ///< covariance of `value`
+  Column3<Real> first{}, second{};  ///< columns of P Hx', one for each component of `value`
 
   /// value' S^-1 value.
   Real squared() const { return squared(value); }
@@ -88,6 +87,7 @@ struct Innovation {
   }
 };
 
+/// The innovation of range and bearing, for which Hx = [-ux -uy 0; uy/d -ux/d -1].
 template <class Real>
 [[gnu::always_inline]] inline Innovation<Real> innovation_of(const Symmetric3<Real>& P,
                                                              const LineOfSight<Real>& s,
@@ -101,10 +101,10 @@ template <class Real>
   const Column3<Real> bearing{P.xx * cy - P.xy * cx - P.xh, P.xy * cy - P.yy * cx - P.yh,
                               P.xh * cy - P.yh * cx - P.hh};
   return {value,
-          {noise.range + map.along - (s.ux * range.x + s.uy * range.y),
+          {noise.first + map.along - (s.ux * range.x + s.uy * range.y),
            map.cross * s.per_range - (s.ux * bearing.x + s.uy * bearing.y),
-           noise.bearing + map.across * s.per_range * s.per_range + cy * bearing.x -
-               cx * bearing.y - bearing.h},
+           noise.second + map.across * s.per_range * s.per_range + cy * bearing.x - cx * bearing.y -
+               bearing.h},
           range,
           bearing};
 }
@@ -116,24 +116,24 @@ struct Density {
 };
 
 /// The two components of an innovation made uncorrelated, so that both are scalar updates: the
-/// range, and the bearing minus its regression on the range. Lanes outside `use` get zero gains.
+/// first, and the second minus its regression on the first. Lanes outside `use` get zero gains.
 template <class Real>
 struct Decorrelated {
-  Real per_rr, per_bb;  ///< 1 / variance of each
-  Real slope;           ///< regression of the bearing on the range
-  Real first, second;   ///< values of the two
+  Real per_first, per_second;  ///< 1 / variance of each
+  Real slope;                  ///< regression of the second on the first
+  Real first, second;          ///< values of the two
   Density<Real> density;
 
   template <class Mask>
   [[gnu::always_inline]] Decorrelated(const Innovation<Real>& v, const Mask& use) {
     const Real determinant = v.S.determinant();
     const Real inverse = select(use, 1.0 / (v.S.xx * determinant), Real(0.0));
-    per_rr = determinant * inverse;
-    per_bb = v.S.xx * v.S.xx * inverse;
-    slope = v.S.xy * per_rr;
+    per_first = determinant * inverse;
+    per_second = v.S.xx * v.S.xx * inverse;
+    slope = v.S.xy * per_first;
     first = v.value.first;
     second = v.value.second - slope * first;
-    density = {first * first * per_rr + second * second * per_bb,
+    density = {first * first * per_first + second * second * per_second,
                select(use, determinant, Real(1.0))};
   }
 };
@@ -143,11 +143,11 @@ template <class Real, class Mask>
 [[gnu::always_inline]] inline Density<Real> condition(PoseGaussian<Real>& pose,
                                                       const Innovation<Real>& v, const Mask& use) {
   const Decorrelated<Real> d(v, use);
-  const Column3<Real> bearing = v.bearing - d.slope * v.range;
-  const Column3<Real> range_gain = d.per_rr * v.range, bearing_gain = d.per_bb * bearing;
-  const Column3<Real> step = d.first * range_gain + d.second * bearing_gain;
+  const Column3<Real> second = v.second - d.slope * v.first;
+  const Column3<Real> gain_of_first = d.per_first * v.first, gain_of_second = d.per_second * second;
+  const Column3<Real> step = d.first * gain_of_first + d.second * gain_of_second;
   pose.mean = {pose.mean.x + step.x, pose.mean.y + step.y, pose.mean.heading + step.h};
-  pose.covariance = pose.covariance - outer(range_gain, v.range) - outer(bearing_gain, bearing);
+  pose.covariance = pose.covariance - outer(gain_of_first, v.first) - outer(gain_of_second, second);
   return d.density;
 }
 
@@ -231,8 +231,8 @@ struct Linearised {
     const Turned<Real> P = turned(landmark.covariance, s);
     const Measurement<Real> innovation = residual(seen, s);
     const Real along = innovation.first, across = innovation.second * s.predicted.range;
-    const Turned<Real> R{noise.range, Real(0.0),
-                         noise.bearing * s.predicted.range * s.predicted.range};
+    const Turned<Real> R{noise.first, Real(0.0),
+                         noise.second * s.predicted.range * s.predicted.range};
     const Symmetric2<Real> S{P.along + R.along, P.cross, P.across + R.across};
     const Real determinant = S.determinant();
     const Real inverse = select(use, 1.0 / determinant, Real(0.0));
@@ -257,7 +257,7 @@ struct Linearised {
                                     const SensorNoise& noise) const {
     const LinearisedPlace<Real> place =
         linearised_place(pose, RangeBearing<Real>{seen.first, seen.second});
-    const Real range = noise.range, bearing = noise.bearing;
+    const Real range = noise.first, bearing = noise.second;
     return {place.point,
             {place.x_range * place.x_range * range + place.x_bearing * place.x_bearing * bearing,
              place.x_range * place.y_range * range + place.x_bearing * place.y_bearing * bearing,

@@ -7,9 +7,7 @@
 #include "filters/moments/sigma_points.hpp"
 
 /// Predicted detections of a sensor of any kind, linearised at the pose of the sensor (EQUATIONS
-/// 2). The components of a detection, in order, have the names range and bearing in SensorNoise and
-/// Innovation. A component that the sensor does not have has derivatives and
-/// innovation 0 and variance 1.
+/// 2). A component that the sensor does not have has derivatives and innovation 0 and variance 1.
 namespace montecarta::filters {
 
 template <class Kind>
@@ -125,9 +123,9 @@ template <class Kind, class Real>
                                                              const SensorNoise& noise) {
   const Column3<Real> first = times(P, s.first), second = times(P, s.second);
   return {value,
-          {noise.range + form(s.first, map, s.first) + dot(s.first, first),
+          {noise.first + form(s.first, map, s.first) + dot(s.first, first),
            form(s.first, map, s.second) + dot(s.first, second),
-           noise.bearing + form(s.second, map, s.second) + dot(s.second, second)},
+           noise.second + form(s.second, map, s.second) + dot(s.second, second)},
           first,
           second};
 }
@@ -153,7 +151,7 @@ LandmarkGaussian<Real> placed_landmark(Kind, const BasicPose<Real>& sensor,
   expect(FixesLandmark<Kind>, "one detection of this sensor places no landmark");
   const Direction<Real> d = direction_of(sensor.heading);
   const LineOfSight<Real> axes{{}, d.cosine, d.sine, Real(1.0)};
-  const Turned<Real> R{Real(noise.range), Real(0.0), Real(noise.bearing)};
+  const Turned<Real> R{Real(noise.first), Real(0.0), Real(noise.second)};
   return {BasicPoint<Real>{sensor.x, sensor.y} + in_map(seen.first, seen.second, axes),
           turned_back(R, axes)};
 }
@@ -210,7 +208,7 @@ struct LinearisedSensor : Linearised {
       return Column3<Real>{-(M.xx * row.x + M.xy * row.y), -(M.xy * row.x + M.yy * row.y),
                            Real(0.0)};
     };
-    v.range = column(s.first), v.bearing = column(s.second);
+    v.first = column(s.first), v.second = column(s.second);
     const auto use = matched && is_usable(s);
     weigh(Kind(), condition(landmark, v, use), use, matched, evidence);
     return v;
@@ -310,7 +308,7 @@ struct SigmaPointsOf : SigmaPoints {
                           const Mask& matched, Evidence<Real>& evidence) const {
     const SigmaRule& rule = rules().pose;
     const SigmaSight<Kind, Real> s(pose.mean, landmark.mean, rule);
-    ObservationMoments<Real> own{.covariance = {Real(noise.range), Real(0.0), Real(noise.bearing)}};
+    ObservationMoments<Real> own{.covariance = {Real(noise.first), Real(0.0), Real(noise.second)}};
     Column3<Real> first{}, second{};
     for (const Column3<Real>& column : s.columns(pose.covariance)) {
       const Measurement<Real> D = s.add(column, own);
@@ -323,7 +321,7 @@ struct SigmaPointsOf : SigmaPoints {
     Innovation<Real> whole = s.innovation(seen, both);
     Innovation<Real> proposal =
         map_uncertainty() == MapUncertainty::on ? whole : s.innovation(seen, own);
-    proposal.range = s.in_map(first), proposal.bearing = s.in_map(second);
+    proposal.first = s.in_map(first), proposal.second = s.in_map(second);
     const auto use = matched && s.usable();
     condition(pose, proposal, use);
     weigh(Kind(), density_of(whole, use), use, matched, evidence);
@@ -336,7 +334,7 @@ struct SigmaPointsOf : SigmaPoints {
     const SigmaRule& rule = rules().landmark;
     const SigmaSight<Kind, Real> s(pose, landmark.mean, rule);
     ObservationMoments<Real> moments{
-        .covariance = {Real(noise.range), Real(0.0), Real(noise.bearing)}};
+        .covariance = {Real(noise.first), Real(0.0), Real(noise.second)}};
     Column3<Real> first{}, second{};
     for (const Column3<Real>& column : s.columns(in_plane(landmark.covariance))) {
       const Measurement<Real> D = s.add(column, moments);  // a landmark moves opposite to the pose
@@ -344,7 +342,7 @@ struct SigmaPointsOf : SigmaPoints {
       second = second - Real(rule.antisymmetric * rule.spread * D.second) * column;
     }
     Innovation<Real> v = s.innovation(seen, moments);
-    v.range = s.in_map(first), v.bearing = s.in_map(second);
+    v.first = s.in_map(first), v.second = s.in_map(second);
     const auto use = matched && s.usable();
     weigh(Kind(), condition(landmark, v, use), use, matched, evidence);
     return v;

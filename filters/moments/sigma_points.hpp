@@ -121,7 +121,7 @@ template <class Real>
   pair.odd = {-pair.odd.first, -pair.odd.second - rule.spread * q.heading};
   const Real aa = P.xx - q.along * q.along;  // covariance of the columns after the first
   const Real ah = P.xh - q.along * q.heading, hh = P.hh - q.heading * q.heading;
-  ObservationMoments<Real> own{.covariance = {noise.range + aa, ah, noise.bearing + hh}};
+  ObservationMoments<Real> own{.covariance = {noise.first + aa, ah, noise.second + hh}};
   own.add(pair, rule);
   ObservationMoments<Real> whole = own;
   whole.add(observation_pair(range, rule.spread * m.along, rule.spread * m.across), rule);
@@ -133,8 +133,8 @@ template <class Real>
       map_uncertainty == MapUncertainty::on ? observation.whole : own.innovation(seen, s, rule);
   const Real r = rule.antisymmetric * rule.spread * pair.odd.first;
   const Real b = rule.antisymmetric * rule.spread * pair.odd.second;
-  observation.proposal.range = in_map(q.along * r - aa, q.across * r, q.heading * r - ah, s);
-  observation.proposal.bearing = in_map(q.along * b - ah, q.across * b, q.heading * b - hh, s);
+  observation.proposal.first = in_map(q.along * r - aa, q.across * r, q.heading * r - ah, s);
+  observation.proposal.second = in_map(q.along * b - ah, q.across * b, q.heading * b - hh, s);
   return observation;
 }
 
@@ -171,7 +171,7 @@ struct LandmarkObservation {
     const double per_spread = rule.antisymmetric * rule.spread, turning_angle = bend_weight(rule);
     slope = {per_spread * odd.first, per_spread * odd.second};
     N = outer(turning_angle, even);
-    N.xx += noise.range, N.yy += noise.bearing;
+    N.xx += noise.first, N.yy += noise.second;
     innovation = {
         residual(seen, s, {rule.mean_weight * even.first, rule.mean_weight * even.second}),
         Symmetric2<Real>{N.xx + rest, N.xy, N.yy} + outer(1.0, slope)};
@@ -276,7 +276,7 @@ class SigmaPoints {
     const Direction<Real> d = direction_of(Real(pose.heading + seen.second));
     const Real odd = seen.first * ray_.sine, even = seen.first * (ray_.cosine - 1.0);
     const Real way = seen.first + rule.mean_weight * even;
-    const Real along = noise.range + bend_weight(rule) * even * even;
+    const Real along = noise.first + bend_weight(rule) * even * even;
     const Real across = rule.antisymmetric * odd * odd;
     return {{pose.x + way * d.cosine, pose.y + way * d.sine},
             {along * d.cosine * d.cosine + across * d.sine * d.sine,

@@ -133,7 +133,7 @@ void RelativeGaussian::add_duplicate(const Seen& seen) {
 ChainPoint RelativeGaussian::add_point(const RangeBearing<double>& observed) {
   const bool is_polar = is_at_newest_frame();
   const Eigen::Index row = add_rows(2);
-  const Eigen::Vector2d variances(noise_.range, noise_.bearing);
+  const Eigen::Vector2d variances(noise_.first, noise_.second);
   const ChainPoint point{row, chain_.newest_frame(), is_polar};
   if (is_polar) {
     mean_.segment<2>(row) << observed.range, observed.bearing;
@@ -230,7 +230,7 @@ RelativeOutcome RelativeGaussian::see(std::span<const Seen> scan, int iterations
     if (!too_near(predicted_observation(now.in(p.frame), at.place))) used.push_back(seen);
   }
   if (used.empty()) return {};
-  const Eigen::Vector2d variances(noise_.range, noise_.bearing);
+  const Eigen::Vector2d variances(noise_.first, noise_.second);
   const RelativeMeasurement measurement{
       .oldest_frame = oldest,
       .linearise = [&](const Eigen::VectorXd& mean, const VehicleInFrames& vehicle,
@@ -318,7 +318,7 @@ void RelativeGaussian::expect_one(std::size_t landmark, const VehicleGaussian& v
   const Eigen::Matrix2d mixed = Hl * vehicle.with_all.middleRows<2>(p.row) * Hx.transpose();
   Eigen::Matrix2d S = Hx * vehicle.covariance * Hx.transpose() + mixed + mixed.transpose() +
                       Hl * P_.block<2, 2>(p.row, p.row) * Hl.transpose();
-  S.diagonal() += Eigen::Vector2d(noise_.range, noise_.bearing);
+  S.diagonal() += Eigen::Vector2d(noise_.first, noise_.second);
   expect(landmark, seen.observation, S);
 }
 

@@ -113,7 +113,7 @@ void Segment::condition(const FactorGraph::Observation& observation, const Pose&
   if (!too_near(at.observation)) {
     const Matrix23 H = pose_jacobian(at);
     Eigen::Matrix2d S = H * covariance_ * H.transpose();
-    S.diagonal() += Eigen::Vector2d(noise.range, noise.bearing);
+    S.diagonal() += Eigen::Vector2d(noise.first, noise.second);
     if (const auto L = factor(S)) {
       seen.pose = whitened(*L, H);
       seen.landmark = whitened(*L, landmark_jacobian(at));

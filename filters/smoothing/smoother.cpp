@@ -54,7 +54,7 @@ double GaussNewton::squares(const FactorGraph& graph, const GraphEstimate& estim
       const auto expected = predicted_observation(estimate.poses[t], estimate.landmarks[landmark]);
       if (too_near(expected)) continue;
       const auto [range, bearing] = residual(observed, expected);
-      sum += range * range / noise_.range + bearing * bearing / noise_.bearing;
+      sum += range * range / noise_.first + bearing * bearing / noise_.second;
     }
   }
   return sum;

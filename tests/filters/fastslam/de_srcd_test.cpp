@@ -205,7 +205,7 @@ TEST(PoseFitness, IsEquation32OrTheDensityOfThePose) {
         {{{-10.0, 7.0}, {0.1, 0.0, 0.4}}, {12.0, 2.0}, 1.0},
         {{{0.0, 0.0}, {}}, {1.0, 1.0}, 0.0}};  // matched nothing
     double printed = 0.0, density = PoseDensity<double>(prior)(pose);
-    const Eigen::Matrix2d R = Eigen::Vector2d(noise.range, noise.bearing).asDiagonal();
+    const Eigen::Matrix2d R = Eigen::Vector2d(noise.first, noise.second).asDiagonal();
     for (std::size_t k = 0; k < 2; ++k) {
       const auto& [landmark, seen, matched] = scan[k];
       const auto& P = landmark.covariance;

@@ -189,7 +189,7 @@ TEST(SensorFastSlam, SigmaPointsOfALinearModelAreTheKalmanFilter) {
     EXPECT_NEAR(moved.mean.y, kalman.mean.y, 1e-5) << Kind::kName;
     EXPECT_NEAR(moved.covariance.xy, kalman.covariance.xy, 1e-9) << Kind::kName;
     EXPECT_LT(kalman.covariance.xx, 2e-5) << Kind::kName;
-    EXPECT_GT(v.S.xx, noise.range) << Kind::kName;
+    EXPECT_GT(v.S.xx, noise.first) << Kind::kName;
   };
   const auto exact = sight(PositionSensor(), pose.mean, landmark.mean).predicted;
   compare(PositionSensor(), {exact.first + 0.003, exact.second - 0.004});

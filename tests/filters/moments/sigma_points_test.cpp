@@ -24,7 +24,7 @@ const double kInterval = std::sqrt(3.0);
 SigmaPoints points_by(const SigmaRule& rule, const SensorNoise& noise,
                       MapUncertainty map_uncertainty = MapUncertainty::on) {
   Belief belief;
-  belief.sigma_bearing = std::sqrt(noise.bearing);
+  belief.sigma_bearing = std::sqrt(noise.second);
   return SigmaPoints({.motion = rule, .pose = rule, .landmark = rule}, belief, map_uncertainty);
 }
 
@@ -34,7 +34,7 @@ Image<7, 2> literal_observation(const RandomObservation& c, const Transform& tra
   Vector<7> x = Vector<7>::Zero();
   x.head<3>() = plain::to_vector(c.pose.mean);
   x.segment<2>(3) = to_vector(c.landmark.mean);
-  const Vector<2> R(std::sqrt(c.noise.range), std::sqrt(c.noise.bearing));
+  const Vector<2> R(std::sqrt(c.noise.first), std::sqrt(c.noise.second));
   const Eigen::Matrix2d root = R.asDiagonal();
   const Vector<3> pose = x.head<3>();
   const Vector<2> landmark = x.segment<2>(3);
@@ -87,7 +87,7 @@ TEST(SigmaObservation, UpdatesALandmarkAsTheSquareRootRecursionDoes) {
     const Eigen::Matrix2d S = chol_in<2>(across_first(pose, mu), symmetric(c.landmark.covariance));
     const auto image =
         plain::central_differences<2, 1>(mu, S, kInterval, plain::LandmarkModel{c.pose.mean});
-    const Vector<2> R(std::sqrt(c.noise.range), std::sqrt(c.noise.bearing));
+    const Vector<2> R(std::sqrt(c.noise.first), std::sqrt(c.noise.second));
     const Eigen::Matrix2d root = R.asDiagonal();
     Eigen::Matrix<double, 2, 6> columns;
     columns << image.A, image.B, root;
@@ -111,7 +111,7 @@ TEST(SigmaObservation, InitialisesALandmarkAsFivePointsDo) {
   RngStream draw({.seed = 94, .purpose = Draw::test});
   for (int n = 0; n < 500; ++n) {
     const RandomObservation c(draw);
-    const Vector<2> R(std::sqrt(c.noise.range), std::sqrt(c.noise.bearing));
+    const Vector<2> R(std::sqrt(c.noise.first), std::sqrt(c.noise.second));
     const Eigen::Matrix2d root = R.asDiagonal();
     const auto image =
         plain::unscented<2, -1>(to_vector(c.seen), root, {}, plain::PlaceModel{c.pose.mean});
@@ -168,11 +168,11 @@ Eigen::Matrix2d covariance_of(const Innovation<double>& v) {
 /// P_xz, the columns by range and by bearing.
 Matrix32 cross_of(const Innovation<double>& v) {
   Matrix32 C;
-  C << v.range.x, v.bearing.x, v.range.y, v.bearing.y, v.range.h, v.bearing.h;
+  C << v.first.x, v.second.x, v.first.y, v.second.y, v.first.h, v.second.h;
   return C;
 }
 Eigen::Matrix2d root_of(const SensorNoise& noise) {
-  return Vector<2>(std::sqrt(noise.range), std::sqrt(noise.bearing)).asDiagonal();
+  return Vector<2>(std::sqrt(noise.first), std::sqrt(noise.second)).asDiagonal();
 }
 Eigen::Matrix2d root_of(const RandomObservation& c) {
   const Vector<3> pose = plain::to_vector(c.pose.mean);
@@ -245,7 +245,7 @@ struct LinearObservation {
     const Eigen::Matrix3d P = symmetric(c.pose.covariance);
     of_pose = Hx * P * Hx.transpose();
     of_map = Hf * symmetric(c.landmark.covariance) * Hf.transpose();
-    of_sensor = Vector<2>(c.noise.range, c.noise.bearing).asDiagonal();
+    of_sensor = Vector<2>(c.noise.first, c.noise.second).asDiagonal();
     cross = P * Hx.transpose();
   }
   Eigen::Matrix2d whole() const { return of_pose + of_map + of_sensor; }

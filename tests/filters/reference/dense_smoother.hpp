@@ -98,7 +98,7 @@ class DenseSmoother {
                        Eigen::Index row) {
     const Eigen::Vector2d place = landmark(observation.landmark);
     const auto at = linearised_observation(pose(t), Point{place.x(), place.y()});
-    const Eigen::Vector2d per_sigma(1.0 / std::sqrt(noise_.range), 1.0 / std::sqrt(noise_.bearing));
+    const Eigen::Vector2d per_sigma(1.0 / std::sqrt(noise_.first), 1.0 / std::sqrt(noise_.second));
     r_.segment<2>(row) =
         per_sigma.asDiagonal() * to_vector(residual(at.observation, observation.observed));
     J_.block<2, 3>(row, row_of_pose(t)) = per_sigma.asDiagonal() * pose_jacobian(at);

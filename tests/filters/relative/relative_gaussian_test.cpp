@@ -61,8 +61,8 @@ std::vector<RelativeGaussian::Seen> scan_of(const RelativeGaussian& gaussian,
   std::vector<RelativeGaussian::Seen> scan;
   for (Eigen::Index l = 0; 2 * l < z.size(); ++l) {
     scan.push_back({static_cast<std::size_t>(l),
-                    {z(2 * l) + by * std::sqrt(noise.range),
-                     z(2 * l + 1) - 0.5 * by * std::sqrt(noise.bearing)}});
+                    {z(2 * l) + by * std::sqrt(noise.first),
+                     z(2 * l + 1) - 0.5 * by * std::sqrt(noise.second)}});
   }
   return scan;
 }
