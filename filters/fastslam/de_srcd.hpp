@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "filters/fastslam/fast_slam_filters.hpp"
 #include "filters/fastslam/gaussian_proposal.hpp"
 #include "filters/fastslam/pose_evolution.hpp"
+#include "filters/fastslam/sigma_filters.hpp"
 
 #include <algorithm>
 #include <cmath>

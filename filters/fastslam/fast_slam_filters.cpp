@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/fastslam/fast_slam_filters.hpp"
 
+#include "filters/fastslam/sigma_filters.hpp"
 #include "filters/setup/filter_kind.hpp"
 
 #include <string>

@@ -62,18 +62,6 @@ std::unique_ptr<SlamFilter> make_refined(const FilterSetup& setup,
       Proposal(settings.particles, setup.belief, weight_form(setup.options), for_pose, for_map));
 }
 
-/// The option that includes the landmark's covariance in the innovation of the pose (EQUATIONS 7).
-Parameter map_uncertainty_option();
-MapUncertainty map_uncertainty(const FilterOptions& options);
-
-/// Interval and weights of central differences (EQUATIONS 3) for every stage; `map_uncertainty`
-/// only affects the pose.
-std::vector<Parameter> central_difference_options();
-SigmaPoints central_difference_points(const FilterSetup& setup, MapUncertainty map_uncertainty);
-/// The scaled unscented transform of every stage (EQUATIONS 7), with 5 dimensions for a motion with
-/// two controls (pose, control) and for an observation (pose, landmark), and 2 for a landmark.
-SigmaPoints unscented_points(const FilterSetup& setup);
-
 /// With `Real` = double this is the same filter, one particle at a time, for tests.
 template <class Real, class SensorPolicy = SensorAtPose>
 std::unique_ptr<SlamFilter> make_fastslam1(const FilterSetup& setup) {
@@ -86,48 +74,14 @@ template <class Real, class SensorPolicy = SensorAtPose>
 std::unique_ptr<SlamFilter> make_fastslam2(const FilterSetup& setup) {
   return make_refined<Real, SensorPolicy>(setup, Linearised(), Linearised());
 }
-/// Unscented FastSLAM (Kim 2008): FastSLAM II with the unscented transform at every stage.
-template <class Real, class SensorPolicy = SensorAtPose>
-std::unique_ptr<SlamFilter> make_ufastslam(const FilterSetup& setup) {
-  const SigmaPoints unscented = unscented_points(setup);
-  return make_refined<Real, SensorPolicy>(setup, unscented, unscented);
-}
-/// SRCD-FastSLAM (Ankishan 2016; EQUATIONS 8): FastSLAM II with central differences at every stage.
-/// It keeps covariances and factors them when points are drawn, which equals the square-root
-/// recursion up to rounding.
-template <class Real, class SensorPolicy = SensorAtPose>
-std::unique_ptr<SlamFilter> make_srcd(const FilterSetup& setup) {
-  const SigmaPoints points = central_difference_points(setup, map_uncertainty(setup.options));
-  return make_refined<Real, SensorPolicy>(setup, points, points);
-}
-/// SRCD-aided FastSLAM (EQUATIONS 8): poses like FastSLAM II, landmarks by central differences.
-template <class Real>
-std::unique_ptr<SlamFilter> make_srcd_aided(const FilterSetup& setup) {
-  return make_refined<Real>(setup, Linearised(),
-                            central_difference_points(setup, MapUncertainty::on));
-}
-/// SRCD-particle-filter based FastSLAM (EQUATIONS 8): poses by central differences, landmarks like
-/// FastSLAM II.
-template <class Real>
-std::unique_ptr<SlamFilter> make_srcd_pf(const FilterSetup& setup) {
-  return make_refined<Real>(setup, central_difference_points(setup, map_uncertainty(setup.options)),
-                            Linearised());
-}
 
-// These large templates are compiled apart. The last one serves SRCD-FastSLAM and U-FastSLAM.
+// These large templates are compiled apart.
 extern template std::unique_ptr<SlamFilter> make_fastslam1<Lanes>(const FilterSetup&);
 extern template std::unique_ptr<SlamFilter> make_fastslam2<Lanes>(const FilterSetup&);
-extern template std::unique_ptr<SlamFilter> make_srcd_aided<Lanes>(const FilterSetup&);
-extern template std::unique_ptr<SlamFilter> make_srcd_pf<Lanes>(const FilterSetup&);
-extern template std::unique_ptr<SlamFilter> make_refined<Lanes>(const FilterSetup&,
-                                                                const SigmaPoints&,
-                                                                const SigmaPoints&);
 
 /// Make the filter for the sensor of the setup.
 std::unique_ptr<SlamFilter> make_fastslam1_of_sensor(const FilterSetup& setup);
 std::unique_ptr<SlamFilter> make_fastslam2_of_sensor(const FilterSetup& setup);
-std::unique_ptr<SlamFilter> make_refined_of_sensor(const FilterSetup& setup,
-                                                   const SigmaPoints& points);
 
 /// Lines for the table of factory.cpp.
 FilterKind fastslam1_kind();

@@ -3,7 +3,6 @@
 
 #include "filters/fastslam/concepts.hpp"
 #include "filters/moments/gaussians.hpp"
-#include "filters/moments/sigma_points.hpp"
 #include "filters/population/population.hpp"
 
 #include <optional>

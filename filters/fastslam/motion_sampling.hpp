@@ -5,7 +5,6 @@
 #include "engine/random/stream.hpp"
 #include "filters/fastslam/concepts.hpp"
 #include "filters/models/ackermann.hpp"
-#include "filters/moments/sigma_points.hpp"
 #include "filters/population/population.hpp"
 
 #include <vector>

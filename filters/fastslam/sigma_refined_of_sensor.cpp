@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/fastslam/delayed_association.hpp"
-#include "filters/fastslam/fast_slam_filters.hpp"
+#include "filters/fastslam/sigma_filters.hpp"
 
 std::unique_ptr<montecarta::engine::SlamFilter> montecarta::filters::make_refined_of_sensor(
     const FilterSetup& setup, const SigmaPoints& points) {

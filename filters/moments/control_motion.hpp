@@ -2,6 +2,7 @@
 #pragma once
 
 #include "filters/moments/motion_increment.hpp"
+#include "filters/moments/sigma_rule.hpp"
 #include "filters/setup/filter_setup.hpp"
 
 namespace montecarta::filters {
@@ -19,6 +20,21 @@ Parameter linearised_motion_option();
 Parameter fitting_motion_option();
 /// The value of the option `motion`.
 Motion motion_of(const FilterOptions& options);
+
+/// One control step of `duration` [s] by sigma points of (pose, control noise) (EQUATIONS 3). The
+/// square root has the heading first: in the pose only its column is nonlinear, while those of x
+/// and y are carried along unchanged; in the controls only the last one is. The result equals that
+/// of sending all points through the vehicle, which are eleven for two controls.
+MotionIncrement moved_by_sigma_points(const MotionIncrement& before, const Control& control,
+                                      double duration, const Belief& belief, const SigmaRule& rule);
+
+/// One control step of `duration` [s] with its noise averaged instead of linearised. Mean and
+/// covariance of the displacement in the frame of the vehicle are exact in the controls in which it
+/// is linear, and by three Gauss-Hermite nodes in the last one. Linearisation neglects that noise
+/// of the steering shortens the distance, and that noise of the speed multiplies noise of the
+/// steering. The uncertainty of the initial heading is propagated linearised.
+MotionIncrement moved_by_quadrature(const MotionIncrement& before, const Control& control,
+                                    double duration, const Belief& belief);
 
 /// One control step of `duration` [s] with a control that is a measurement of the true one, not a
 /// command to which noise is added. Mean and covariance are unbiased, given the true control

@@ -3,7 +3,6 @@
 
 #include "engine/numbers/real.hpp"
 #include "filters/moments/gaussians.hpp"
-#include "filters/moments/sigma_rule.hpp"
 #include "filters/setup/filter_setup.hpp"
 
 #include <array>
@@ -47,20 +46,5 @@ class MotionIncrement {
   Pose pose_;
   Symmetric3<double> covariance_;
 };
-
-/// One control step of `duration` [s] by sigma points of (pose, control noise) (EQUATIONS 3). The
-/// square root has the heading first: in the pose only its column is nonlinear, while those of x
-/// and y are carried along unchanged; in the controls only the last one is. The result equals that
-/// of sending all points through the vehicle, which are eleven for two controls.
-MotionIncrement moved_by_sigma_points(const MotionIncrement& before, const Control& control,
-                                      double duration, const Belief& belief, const SigmaRule& rule);
-
-/// One control step of `duration` [s] with its noise averaged instead of linearised. Mean and
-/// covariance of the displacement in the frame of the vehicle are exact in the controls in which it
-/// is linear, and by three Gauss-Hermite nodes in the last one. Linearisation neglects that noise
-/// of the steering shortens the distance, and that noise of the speed multiplies noise of the
-/// steering. The uncertainty of the initial heading is propagated linearised.
-MotionIncrement moved_by_quadrature(const MotionIncrement& before, const Control& control,
-                                    double duration, const Belief& belief);
 
 }  // namespace montecarta::filters

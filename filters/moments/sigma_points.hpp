@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "filters/moments/control_motion.hpp"
 #include "filters/moments/linearised.hpp"
-#include "filters/moments/sigma_rule.hpp"
 
 /// Sigma points of an observation (EQUATIONS 3) in the frame of the line of sight. The square roots
 /// in this frame have the component across the line first, since range and bearing are nonlinear in

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Landmarks in a form of their own: the family takes any that gaussian_of() gives as a Gaussian.
-#include "filters/fastslam/fast_slam_filters.hpp"
 #include "filters/fastslam/motion_sampling.hpp"
+#include "filters/fastslam/sigma_filters.hpp"
 #include "tests/filters/fastslam/filter_comparison.hpp"
 
 namespace montecarta::filters {

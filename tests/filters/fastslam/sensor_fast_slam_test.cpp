@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // FastSLAM of sensors other than range and bearing at the pose.
 #include "filters/fastslam/delayed_association.hpp"
-#include "filters/fastslam/fast_slam_filters.hpp"
+#include "filters/fastslam/sigma_filters.hpp"
 #include "filters/joint/joint_filter.hpp"
 #include "tests/filters/same_runs.hpp"
 #include "tests/filters/small_world.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The moments of a step of every vehicle, against points that are all sent through it.
 #include "filters/models/ackermann.hpp"
-#include "filters/moments/motion_increment.hpp"
+#include "filters/moments/control_motion.hpp"
 #include "tests/filters/moments/random_gaussians.hpp"
 #include "tests/filters/some_models.hpp"
 
