@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/association/pairing.hpp"
 
-#include "engine/numbers/angle.hpp"
-
 #include <cmath>
 
 namespace montecarta::filters {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/core/drive.hpp"
-#include "engine/core/slam_filter.hpp"
 #include "filters/setup/filter_setup.hpp"
 
 #include <algorithm>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/numbers/real.hpp"
 #include "engine/random/stream.hpp"
 
 #include <array>

@@ -2,8 +2,6 @@
 #pragma once
 
 #include "filters/fastslam/particle_maps.hpp"
-#include "filters/moments/linearised.hpp"
-#include "filters/moments/motion_increment.hpp"
 #include "filters/population/population.hpp"
 
 #include <concepts>

@@ -2,7 +2,6 @@
 #include "filters/fastslam/de_srcd.hpp"
 
 #include "filters/setup/filter_kind.hpp"
-#include "filters/setup/filter_setup.hpp"
 
 #include <string>
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "filters/fastslam/gaussian_proposal.hpp"
 #include "filters/fastslam/pose_evolution.hpp"
 #include "filters/fastslam/sigma_filters.hpp"
 

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/particles/blocks.hpp"
 #include "filters/fastslam/concepts.hpp"
-#include "filters/population/population.hpp"
 
 #include <algorithm>
 #include <utility>

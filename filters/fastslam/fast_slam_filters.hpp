@@ -5,7 +5,6 @@
 #include "filters/fastslam/gaussian_proposal.hpp"
 #include "filters/fastslam/known_association.hpp"
 #include "filters/fastslam/nearest_association.hpp"
-#include "filters/fastslam/sensor_policy.hpp"
 
 #include <memory>
 #include <utility>

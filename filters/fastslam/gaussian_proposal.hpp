@@ -2,8 +2,6 @@
 #pragma once
 
 #include "filters/fastslam/concepts.hpp"
-#include "filters/moments/gaussians.hpp"
-#include "filters/population/population.hpp"
 
 #include <optional>
 #include <vector>

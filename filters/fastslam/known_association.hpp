@@ -2,8 +2,6 @@
 #pragma once
 
 #include "filters/fastslam/concepts.hpp"
-#include "filters/fastslam/particle_maps.hpp"
-#include "filters/population/population.hpp"
 
 #include <algorithm>
 #include <cstdint>

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/particles/blocks.hpp"
 #include "engine/random/stream.hpp"
 #include "filters/fastslam/concepts.hpp"
 #include "filters/models/ackermann.hpp"
-#include "filters/population/population.hpp"
 
 #include <vector>
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/core/slam_filter.hpp"
-#include "engine/particles/blocks.hpp"
 #include "engine/particles/genealogy.hpp"
 #include "filters/moments/gaussians.hpp"
 

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/particles/blocks.hpp"
 #include "filters/evolution/differential_evolution.hpp"
-#include "filters/moments/gaussians.hpp"
-#include "filters/moments/linearised.hpp"
 #include "filters/population/population.hpp"
 
 #include <algorithm>

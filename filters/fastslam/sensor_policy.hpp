@@ -2,11 +2,6 @@
 #pragma once
 
 #include "engine/errors.hpp"
-#include "filters/models/sensor.hpp"
-#include "filters/moments/evidence.hpp"
-#include "filters/moments/gaussians.hpp"
-#include "filters/moments/linearised.hpp"
-#include "filters/moments/motion_increment.hpp"
 #include "filters/moments/sensor_sight.hpp"
 
 #include <variant>

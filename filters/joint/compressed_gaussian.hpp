@@ -2,7 +2,6 @@
 #pragma once
 
 #include "filters/joint/joint_gaussian.hpp"
-#include "filters/joint/retraction.hpp"
 
 #include <Eigen/Core>
 

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/core/pose.hpp"
 #include "filters/association/map_association.hpp"
 #include "filters/joint/delayed_initialisation.hpp"
 #include "filters/joint/linearisation.hpp"
-#include "filters/joint/retraction.hpp"
 
 #include <Eigen/Core>
 

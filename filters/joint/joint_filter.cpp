@@ -4,7 +4,6 @@
 #include "filters/joint/joint_belief.hpp"
 #include "filters/moments/control_motion.hpp"
 #include "filters/population/population.hpp"
-#include "filters/setup/filter_kind.hpp"
 
 #include <cmath>
 #include <stdexcept>

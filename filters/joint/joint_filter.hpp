@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/core/slam_filter.hpp"
 #include "filters/setup/filter_kind.hpp"
 #include "filters/setup/filter_setup.hpp"
 

@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/core/slam_filter.hpp"
-#include "engine/numbers/angle.hpp"
-#include "filters/joint/map_moments.hpp"
 #include "filters/joint/retraction.hpp"
 #include "filters/models/eigen_jacobians.hpp"
 #include "filters/moments/motion_increment.hpp"
-#include "filters/setup/filter_setup.hpp"
 
 #include <Eigen/Core>
 

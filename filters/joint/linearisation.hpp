@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/core/pose.hpp"
 #include "filters/joint/compressed_gaussian.hpp"
 
 #include <Eigen/Core>

@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/core/slam_filter.hpp"
-#include "engine/particles/blocks.hpp"
-#include "engine/particles/weights.hpp"
 #include "filters/marginal/gauss_transform.hpp"
 #include "filters/marginal/marginal_options.hpp"
-#include "filters/moments/gaussians.hpp"
 #include "filters/population/population.hpp"
 
 #include <algorithm>

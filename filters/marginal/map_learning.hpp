@@ -1,14 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/core/slam_filter.hpp"
-#include "engine/particles/weights.hpp"
-#include "filters/evolution/differential_evolution.hpp"
-#include "filters/marginal/marginal_options.hpp"
 #include "filters/marginal/shared_map.hpp"
-#include "filters/moments/evidence.hpp"
-#include "filters/moments/linearised.hpp"
-#include "filters/population/population.hpp"
 
 #include <algorithm>
 #include <array>

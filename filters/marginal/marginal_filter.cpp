@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/marginal/marginal_filter.hpp"
 
-#include "filters/setup/filter_kind.hpp"
-#include "filters/setup/filter_setup.hpp"
-
 #include <string>
 
 namespace montecarta::filters {

@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/particles/blocks.hpp"
 #include "filters/marginal/kernel_sums.hpp"
 #include "filters/marginal/map_learning.hpp"
-#include "filters/marginal/marginal_options.hpp"
-#include "filters/marginal/shared_map.hpp"
-#include "filters/moments/gaussians.hpp"
-#include "filters/moments/motion_increment.hpp"
-#include "filters/population/population.hpp"
 #include "filters/setup/filter_kind.hpp"
 
 #include <algorithm>

@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/core/slam_filter.hpp"
 #include "filters/association/map_association.hpp"
 #include "filters/marginal/marginal_options.hpp"
-#include "filters/moments/evidence.hpp"
-#include "filters/moments/gaussians.hpp"
-#include "filters/moments/linearised.hpp"
 #include "filters/population/population.hpp"
 
 #include <cstddef>

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/core/drive.hpp"
-#include "engine/core/pose.hpp"
-#include "engine/numbers/real.hpp"
 #include "filters/models/range_bearing.hpp"
 #include "filters/models/vehicle.hpp"
 

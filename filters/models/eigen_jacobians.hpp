@@ -2,7 +2,6 @@
 #pragma once
 
 #include "filters/models/ackermann.hpp"
-#include "filters/models/range_bearing.hpp"
 
 #include <Eigen/Core>
 

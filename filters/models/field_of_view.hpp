@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/core/pose.hpp"
-#include "engine/numbers/angle.hpp"
 #include "filters/models/sensor.hpp"
 
 #include <Eigen/Core>

@@ -2,8 +2,6 @@
 #pragma once
 
 #include "engine/core/drive.hpp"
-#include "engine/core/pose.hpp"
-#include "engine/namespaces.hpp"
 #include "engine/numbers/real.hpp"
 
 #include <cmath>

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/core/pose.hpp"
-#include "engine/numbers/angle.hpp"
-#include "engine/numbers/real.hpp"
 #include "filters/models/sensor_kinds.hpp"
 
 #include <Eigen/Core>

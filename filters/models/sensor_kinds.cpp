@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/models/sensor_kinds.hpp"
 
-#include "engine/numbers/real.hpp"
 #include "filters/models/eigen_jacobians.hpp"
 
 #include <cmath>

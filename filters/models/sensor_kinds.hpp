@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/core/drive.hpp"
-#include "engine/numbers/angle.hpp"
 #include "filters/models/parameter.hpp"
 #include "filters/models/range_bearing.hpp"
 

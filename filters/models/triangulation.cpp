@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/models/triangulation.hpp"
 
-#include "engine/numbers/real.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -3,7 +3,6 @@
 
 #include "filters/moments/motion_increment.hpp"
 #include "filters/moments/sigma_rule.hpp"
-#include "filters/setup/filter_setup.hpp"
 
 namespace montecarta::filters {
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/core/pose.hpp"
-#include "engine/numbers/real.hpp"
 #include "engine/random/stream.hpp"
 #include "filters/models/range_bearing.hpp"
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "filters/moments/evidence.hpp"
-#include "filters/moments/gaussians.hpp"
 #include "filters/moments/motion_increment.hpp"
 
 namespace montecarta::filters {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "engine/errors.hpp"
-#include "filters/models/sensor_kinds.hpp"
 #include "filters/moments/linearised.hpp"
 
 /// Predicted detections of a sensor of any kind, linearised at the pose of the sensor (EQUATIONS

@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/core/slam_filter.hpp"
 #include "engine/particles/resampling.hpp"
 #include "engine/particles/weights.hpp"
-#include "filters/moments/evidence.hpp"
-#include "filters/moments/gaussians.hpp"
 #include "filters/moments/linearised.hpp"
-#include "filters/moments/motion_increment.hpp"
-#include "filters/setup/filter_setup.hpp"
 
 #include <Eigen/Core>
 

@@ -2,8 +2,6 @@
 #include "filters/relative/relative_ekf_slam.hpp"
 
 #include "filters/joint/joint_gaussian.hpp"
-#include "filters/setup/filter_kind.hpp"
-#include "filters/setup/filter_setup.hpp"
 
 #include <algorithm>
 

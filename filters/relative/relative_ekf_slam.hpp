@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/core/slam_filter.hpp"
 #include "filters/association/map_association.hpp"
 #include "filters/moments/control_motion.hpp"
-#include "filters/relative/relative_chain.hpp"
 #include "filters/relative/relative_gaussian.hpp"
 #include "filters/setup/filter_kind.hpp"
 

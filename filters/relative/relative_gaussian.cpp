@@ -2,7 +2,6 @@
 #include "filters/relative/relative_gaussian.hpp"
 
 #include "filters/joint/map_moments.hpp"
-#include "filters/models/sensor_kinds.hpp"
 
 #include <algorithm>
 #include <limits>

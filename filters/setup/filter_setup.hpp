@@ -2,7 +2,6 @@
 #pragma once
 
 #include "engine/core/slam_filter.hpp"
-#include "engine/namespaces.hpp"
 #include "filters/models/sensor.hpp"
 #include "filters/models/vehicle.hpp"
 

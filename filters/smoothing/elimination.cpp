@@ -2,7 +2,6 @@
 #include "filters/smoothing/elimination.hpp"
 
 #include "filters/joint/joint_gaussian.hpp"
-#include "filters/joint/retraction.hpp"
 
 #include <Eigen/LU>
 

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/smoothing/relative_laplace.hpp"
 
-#include "filters/joint/map_moments.hpp"
-#include "filters/models/sensor_kinds.hpp"
-
 #include <Eigen/LU>
 
 #include <algorithm>

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/smoothing/smoother.hpp"
 
-#include "filters/association/map_association.hpp"
-#include "filters/setup/filter_kind.hpp"
-#include "filters/setup/filter_setup.hpp"
 #include "filters/smoothing/relative_laplace.hpp"
 
 #include <algorithm>
