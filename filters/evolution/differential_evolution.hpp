@@ -235,19 +235,11 @@ void next_generation(Population<Real, D> population, std::size_t generation,
 }  // namespace evolution
 
 /// Evaluates candidates one after the other: `objective(member, candidate)` is the fitness.
-template <class Objective>
-class OneByOne {
- public:
-  explicit OneByOne(Objective objective) : objective_(std::move(objective)) {}
-
-  template <class Candidates, class Fitness>
-  void operator()(const Candidates& candidates, const Fitness& fitness) const {
-    for (std::size_t i = 0; i < candidates.size(); ++i) fitness[i] = objective_(i, candidates[i]);
-  }
-
- private:
-  Objective objective_;
-};
+auto one_by_one(const auto& objective) {
+  return [objective](const auto& candidates, const auto& fitness) {
+    for (std::size_t i = 0; i < candidates.size(); ++i) fitness[i] = objective(i, candidates[i]);
+  };
+}
 
 /// Differential evolution (EQUATIONS 9): moves `population` towards greater fitness and returns the
 /// best member. `evaluate(candidates, fitness)` writes the fitness of a candidate for each member;

@@ -41,15 +41,12 @@ EvolvedSettings evolved_settings(const FilterOptions& options) {
 }
 
 FilterKind de_srcd_kind() {
-  std::vector<Parameter> options = population_options();
-  for (Parameter& option : options_of_evolution()) options.push_back(std::move(option));
-  for (Parameter& option : central_difference_options()) options.push_back(std::move(option));
-  options.push_back(map_uncertainty_option());
   return {.name = "de_srcd",
           .long_name = "DE-SRCD-FastSLAM",
           .source = "Ankishan et al. 2016; EQUATIONS 10",
           .reports = {.particles = true, .mixture = true},
-          .options = std::move(options),
+          .options = population_options(
+              {options_of_evolution(), central_difference_options(), {map_uncertainty_option()}}),
           .restrict_reports =
               [](const FilterSetup& setup, Capabilities& reports) {
                 const EvolutionMode mode = evolved_settings(setup.options).mode;

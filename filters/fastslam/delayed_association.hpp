@@ -125,15 +125,12 @@ class InitialisationOnPaths {
     }
   }
 
-  static Pose pose_of(const BasicPose<Real>& block, std::size_t lane) {
-    return {get(block.x, lane), get(block.y, lane), get(block.heading, lane)};
-  }
   Sighting kept(const Kept& kept, std::size_t k, std::size_t particle) const {
-    return {pose_of(opened_[k].at(particle / kLanes), particle % kLanes), kept.values[k]};
+    return {of_lane(opened_[k].at(particle / kLanes), particle % kLanes), kept.values[k]};
   }
   Sighting now(const Detection& detection, const std::vector<BasicPose<Real>>& poses,
                std::size_t particle) const {
-    return {mounting_.sensor(pose_of(poses[particle / kLanes], particle % kLanes)), detection[0]};
+    return {mounting_.sensor(of_lane(poses[particle / kLanes], particle % kLanes)), detection[0]};
   }
 
   std::size_t particles_;

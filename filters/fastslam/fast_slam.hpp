@@ -125,8 +125,7 @@ class FastSlam final : public SlamFilter {
     if constexpr (KeepsGaussians<Proposal>) proposal_.begin_step();
   }
 
-  StepContext now_ =
-      StepContext::before_all_steps();  ///< context of the present step, with its threads
+  StepContext now_ = StepContext::before_all_steps();  ///< the present step, with its threads
   std::size_t components_;
   Proposal proposal_;
   Associating association_;

@@ -5,27 +5,39 @@
 #include "filters/setup/filter_kind.hpp"
 
 #include <string>
+#include <utility>
 
 namespace montecarta::filters {
 namespace {
 
 const std::vector<std::string> kWeightForms{"closed", "ratio", "batch"};
 
-/// Joins lists of options in the order of the documentation.
-std::vector<Parameter> joined(std::initializer_list<std::vector<Parameter>> parts) {
-  std::vector<Parameter> options;
-  for (const auto& part : parts) options.insert(options.end(), part.begin(), part.end());
-  return options;
-}
-
 Parameter weights_of_sigma_points_option() {
   return choice_parameter("weights", "closed", {"closed", "ratio"},
                           "form of the importance weight (EQUATIONS 6)");
 }
 
-/// The weights `ratio` leave no mixture.
-void drop_mixture_of_ratio(const FilterSetup& setup, Capabilities& reports) {
-  if (weight_form(setup.options) == WeightForm::ratio) reports.mixture = false;
+/// FastSLAM II and the filters like it, for range and bearing at the pose.
+FilterKind refined_kind(const char* name, const char* long_name, const char* source,
+                        std::vector<Parameter> options,
+                        std::unique_ptr<SlamFilter> make(const FilterSetup&)) {
+  return {.name = name,
+          .long_name = long_name,
+          .source = source,
+          .reports = {.particles = true, .mixture = true},
+          .options = std::move(options),
+          .restrict_reports =
+              [](const FilterSetup& setup, Capabilities& reports) {
+                if (weight_form(setup.options) == WeightForm::ratio) reports.mixture = false;
+              },
+          .make = make};
+}
+
+/// `kind` for all sensors, mounted anywhere.
+FilterKind of_all_sensors(FilterKind kind) {
+  kind.sensors.clear();
+  kind.delays_initialisation = true;
+  return kind;
 }
 
 }  // namespace
@@ -84,28 +96,18 @@ FilterKind fastslam1_kind() {
 }
 
 FilterKind fastslam2_kind() {
-  return {.name = "fastslam2",
-          .long_name = "FastSLAM II",
-          .source = "Montemerlo et al. 2003; EQUATIONS 6",
-          .reports = {.particles = true, .mixture = true},
-          .options = joined({population_options(),
-                             {choice_parameter("weights", "closed", kWeightForms,
-                                               "form of the importance weight (EQUATIONS 6)")}}),
-          .sensors = {},
-          .delays_initialisation = true,
-          .restrict_reports = drop_mixture_of_ratio,
-          .make = make_fastslam2_of_sensor};
+  return of_all_sensors(refined_kind(
+      "fastslam2", "FastSLAM II", "Montemerlo et al. 2003; EQUATIONS 6",
+      population_options({{choice_parameter("weights", "closed", kWeightForms,
+                                            "form of the importance weight (EQUATIONS 6)")}}),
+      make_fastslam2_of_sensor));
 }
 
 FilterKind ufastslam_kind() {
-  return {
-      .name = "ufastslam",
-      .long_name = "U-FastSLAM",
-      .source = "Kim et al. 2008; EQUATIONS 7",
-      .reports = {.particles = true, .mixture = true},
-      .options = joined(
-          {population_options(),
-           {weights_of_sigma_points_option(),
+  return of_all_sensors(refined_kind(
+      "ufastslam", "U-FastSLAM", "Kim et al. 2008; EQUATIONS 7",
+      population_options(
+          {{weights_of_sigma_points_option(),
             number_parameter(
                 "alpha", "0.9", 1e-3, 1,
                 "spread of the sigma points; Kim's paper has 0.002, Kim's code 0.9 (EQUATIONS 7)"),
@@ -116,52 +118,33 @@ FilterKind ufastslam_kind() {
                              "second parameter of the spread: alpha^2 (n + kappa) is the squared "
                              "distance of the points"),
             map_uncertainty_option()}}),
-      .sensors = {},
-      .delays_initialisation = true,
-      .restrict_reports = drop_mixture_of_ratio,
-      .make = [](const FilterSetup& setup) {
+      [](const FilterSetup& setup) {
         return make_refined_of_sensor(setup, unscented_points(setup));
-      }};
+      }));
 }
 
 FilterKind srcd_kind() {
-  return {.name = "srcd",
-          .long_name = "SRCD-FastSLAM",
-          .source = "Ankishan et al. 2016; EQUATIONS 8",
-          .reports = {.particles = true, .mixture = true},
-          .options = joined({population_options(),
-                             {weights_of_sigma_points_option()},
-                             central_difference_options(),
-                             {map_uncertainty_option()}}),
-          .sensors = {},
-          .delays_initialisation = true,
-          .restrict_reports = drop_mixture_of_ratio,
-          .make = [](const FilterSetup& setup) {
-            return make_refined_of_sensor(
-                setup, central_difference_points(setup, map_uncertainty(setup.options)));
-          }};
+  return of_all_sensors(
+      refined_kind("srcd", "SRCD-FastSLAM", "Ankishan et al. 2016; EQUATIONS 8",
+                   population_options({{weights_of_sigma_points_option()},
+                                       central_difference_options(),
+                                       {map_uncertainty_option()}}),
+                   [](const FilterSetup& setup) {
+                     return make_refined_of_sensor(
+                         setup, central_difference_points(setup, map_uncertainty(setup.options)));
+                   }));
 }
 
 FilterKind srcd_aided_kind() {
-  return {
-      .name = "srcd_aided",
-      .long_name = "SRCD-aided FastSLAM",
-      .source = "Ankishan et al. 2016, Table 1; EQUATIONS 8",
-      .reports = {.particles = true, .mixture = true},
-      .options = joined(
-          {population_options(), {weights_of_sigma_points_option()}, central_difference_options()}),
-      .restrict_reports = drop_mixture_of_ratio,
-      .make = make_srcd_aided<Lanes>};
+  return refined_kind(
+      "srcd_aided", "SRCD-aided FastSLAM", "Ankishan et al. 2016, Table 1; EQUATIONS 8",
+      population_options({{weights_of_sigma_points_option()}, central_difference_options()}),
+      make_srcd_aided<Lanes>);
 }
 
 FilterKind srcd_pf_kind() {
-  return {.name = "srcd_pf",
-          .long_name = "SRCD-PF FastSLAM",
-          .source = "Ankishan et al. 2016, Table 1; EQUATIONS 8",
-          .reports = {.particles = true, .mixture = true},
-          .options = srcd_kind().options,
-          .restrict_reports = drop_mixture_of_ratio,
-          .make = make_srcd_pf<Lanes>};
+  return refined_kind("srcd_pf", "SRCD-PF FastSLAM", "Ankishan et al. 2016, Table 1; EQUATIONS 8",
+                      srcd_kind().options, make_srcd_pf<Lanes>);
 }
 
 }  // namespace montecarta::filters

@@ -111,9 +111,8 @@ class RefinedCloud {
   MapTransform map_transform_;
   WeightTime weighed_;
   MotionIncrement motion_;
-  std::vector<PoseGaussian<Real>> posterior_;  ///< Gaussians of the last scan before the draw
-  mutable std::optional<CloudMoments>
-      moments_;  ///< moments of the poses since the last scan; computed on demand
+  std::vector<PoseGaussian<Real>> posterior_;    ///< Gaussians of the last scan before the draw
+  mutable std::optional<CloudMoments> moments_;  ///< moments of the poses, computed on demand
   bool is_drawn_ = false;
 };
 

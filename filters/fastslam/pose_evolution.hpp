@@ -153,12 +153,12 @@ class OwnEvolution {
     begin(bounds, chance);
     const Real bound(bounds);
     const SearchBox<Real, 3> box{{Real(0.0), Real(0.0), Real(0.0)}, {bound, bound, bound}, {}};
-    return evolve<Real, 3>(population_, box, settings, EvolutionDraws{chance, first_block()},
-                           scratch_,
-                           [&](Candidates candidates, std::span<Real> fitness) {
-                             evaluate(candidates, fitness);
-                           })
-        .best;
+    const auto used = 2 * static_cast<std::uint32_t>(population_.size());  // blocks, by begin()
+    const auto evaluation = [&](Candidates candidates, std::span<Real> fitness) {
+      evaluate(candidates, fitness);
+    };
+    const EvolutionDraws draws{chance, used};
+    return evolve<Real, 3>(population_, box, settings, draws, scratch_, evaluation).best;
   }
 
  private:
@@ -189,9 +189,6 @@ class OwnEvolution {
       packed_.unpack(fit, q, fitness);
     }
   }
-
-  /// First block of the stream after those used by begin().
-  std::uint32_t first_block() const { return 2 * static_cast<std::uint32_t>(population_.size()); }
 
   /// Fills the first generation with the centre, the sigma points and draws, clamped to the bounds.
   void begin(double bounds, const StreamIdentity& identity) {
@@ -242,7 +239,11 @@ class CloudEvolution {
       association.fetch(b);
       append_matched(association, b, matched_);
       fitness_.emplace_back(predicted[b], noise);
-      const std::array<Real, 3> members = block_of_members(predicted[b].mean);
+      const BasicPose<Real>& pose = predicted[b].mean;
+      const Real x = pose.x - moments_.mean.x, y = pose.y - moments_.mean.y;
+      const std::array<Real, 3> members{frame_.cosine * x + frame_.sine * y,
+                                        frame_.cosine * y - frame_.sine * x,
+                                        wrap(Real(pose.heading - moments_.mean.heading))};
       for (std::size_t i = b * kLanes; i < end_of(b); ++i)
         for (std::size_t j = 0; j < 3; ++j) population_[i][j] = get(members[j], i % kLanes);
     }
@@ -276,11 +277,6 @@ class CloudEvolution {
                                               : fitness_[b].posterior(pose, scan);
   }
 
-  std::array<Real, 3> block_of_members(const BasicPose<Real>& pose) const {
-    const Real x = pose.x - moments_.mean.x, y = pose.y - moments_.mean.y;
-    return {frame_.cosine * x + frame_.sine * y, frame_.cosine * y - frame_.sine * x,
-            wrap(Real(pose.heading - moments_.mean.heading))};
-  }
   /// Poses of the particles of block b; lanes without a particle get the mean.
   BasicPose<Real> block_of_poses(Members members, std::size_t b) const {
     std::array<Real, 3> m{Real(0.0), Real(0.0), Real(0.0)};

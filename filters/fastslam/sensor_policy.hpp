@@ -44,7 +44,8 @@ class MountedPose {
   Mounting mounting_;
 };
 
-/// `Transform` for a sensor that is mounted on the vehicle: refines the pose of the sensor.
+/// `Transform` for a sensor that is mounted on the vehicle: refines the pose of the sensor. All
+/// other arguments, called `scan`, are passed on.
 template <class Transform>
 class Mounted {
  public:
@@ -56,34 +57,25 @@ class Mounted {
                const Belief& belief) const {
     transform_.advance(motion, control, duration, belief);
   }
-  template <class Real, class Mask>
-  [[gnu::always_inline]] Innovation<Real> refine(PoseGaussian<Real>& pose,
-                                                 const LandmarkGaussian<Real>& landmark,
-                                                 const Measurement<Real>& seen,
-                                                 const SensorNoise& noise, const Mask& matched,
-                                                 Evidence<Real>& evidence) const {
+  template <class Real>
+  [[gnu::always_inline]] Innovation<Real> refine(PoseGaussian<Real>& pose, auto&&... scan) const {
     PoseGaussian<Real> sensor = mounting_.sensor(pose);
-    Innovation<Real> v = transform_.refine(sensor, landmark, seen, noise, matched, evidence);
+    Innovation<Real> v = transform_.refine(sensor, scan...);
     pose = mounting_.vehicle(sensor);
     return v;
   }
-  template <class Real, class Mask>
+  template <class Real>
   void refine_in_batch(PoseGaussian<Real>& pose, const BasicPose<Real>& predicted,
-                       const LandmarkGaussian<Real>& landmark, const Measurement<Real>& seen,
-                       const SensorNoise& noise, const Mask& matched,
-                       Evidence<Real>& evidence) const {
+                       auto&&... scan) const {
     PoseGaussian<Real> sensor = mounting_.sensor(pose);
-    transform_.refine_in_batch(sensor, mounting_.sensor(predicted), landmark, seen, noise, matched,
-                               evidence);
+    transform_.refine_in_batch(sensor, mounting_.sensor(predicted), scan...);
     pose = mounting_.vehicle(sensor);
   }
-  template <class Real, class Mask, class Weighed>
+  template <class Real>
   [[gnu::always_inline]] Innovation<Real> update(LandmarkGaussian<Real>& landmark,
                                                  const BasicPose<Real>& pose,
-                                                 const Measurement<Real>& seen,
-                                                 const SensorNoise& noise, const Mask& matched,
-                                                 Weighed& evidence) const {
-    return transform_.update(landmark, mounting_.sensor(pose), seen, noise, matched, evidence);
+                                                 auto&&... scan) const {
+    return transform_.update(landmark, mounting_.sensor(pose), scan...);
   }
   template <class Real>
   LandmarkGaussian<Real> initialise(const BasicPose<Real>& pose, const Measurement<Real>& seen,

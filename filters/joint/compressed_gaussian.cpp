@@ -95,12 +95,8 @@ CompressedGaussian::CompressedGaussian(const Belief& belief, Retraction retracti
 
 void CompressedGaussian::start(const Pose& start) {
   near_.start(start);
-  whole_.clear(std::min(rows(), whole_.room()));
-  basis_.clear();
-  stand_ins_ = 0;
+  make_all_near();
   point_of_.clear();
-  most_near_ = kSmallMap;
-  updates_ = 0;
   balance_ = 0.0;
   is_suspended_ = false;
 }
@@ -109,6 +105,11 @@ void CompressedGaussian::replace(const PoseMoments& pose, const MapMoments& map)
   near_.replace_map(landmarks());
   near_.replace(pose, map);
   std::iota(point_of_.begin(), point_of_.end(), 0U);
+  make_all_near();
+}
+
+/// Forgets far landmarks and their stand-ins.
+void CompressedGaussian::make_all_near() {
   whole_.clear(std::min(rows(), whole_.room()));
   basis_.clear();
   stand_ins_ = 0;

@@ -126,6 +126,7 @@ class CompressedGaussian {
     double variance = 0.0;  ///< [m^2] trace of its covariance
   };
 
+  void make_all_near();
   void use_near_slots(NewPoint& point) const;
   Eigen::Index rows() const { return packed(landmarks()); }
   auto coefficients_of_mean() const { return near_.map().mean.segment(stand_ins_, basis_.size()); }

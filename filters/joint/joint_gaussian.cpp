@@ -26,9 +26,7 @@ constexpr double kConverged = 1e-4;
 
 /// L^-T. For the triangular factor it takes two divisions; S itself is never inverted.
 Eigen::Matrix2d inverse_transposed(const InnovationFactor& L) {
-  Eigen::Matrix2d inverse;
-  inverse << 1.0 / L.l00, -L.l10 / (L.l00 * L.l11), 0.0, 1.0 / L.l11;
-  return inverse;
+  return Eigen::Matrix2d{{1.0 / L.l00, -L.l10 / (L.l00 * L.l11)}, {0.0, 1.0 / L.l11}};
 }
 
 using Matrix3 = Eigen::Matrix3d;
@@ -148,11 +146,6 @@ void JointGaussian::move(const LinearisedMotion& motion) {
   map_.cross.col(0).head(rows()) += motion.by_heading(0) * map_.cross.col(2).head(rows());
   map_.cross.col(1).head(rows()) += motion.by_heading(1) * map_.cross.col(2).head(rows());
   pose_ = pose_after(motion);
-}
-
-LandmarkEstimate JointGaussian::landmark(std::size_t slot) const {
-  const Eigen::Index at = row_of(slot);
-  return {map_.mean.segment<2>(at), map_.covariance.block<2, 2>(at, at)};
 }
 
 PointMoments JointGaussian::point(std::size_t slot) const {

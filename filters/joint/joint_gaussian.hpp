@@ -105,7 +105,6 @@ class JointGaussian {
 
   /// Starts with the vehicle exactly at `start` and an empty map.
   void start(const Pose& start);
-  /// Becomes a copy of `other`, without its unused memory.
 
   const Belief& belief() const { return belief_; }
   const PoseMoments& pose() const { return pose_; }
@@ -122,7 +121,6 @@ class JointGaussian {
   void move(const MotionIncrement& motion) { move(linearised(motion)); }
 
   std::size_t landmarks() const { return n_landmarks_; }
-  LandmarkEstimate landmark(std::size_t slot) const;
   PointMoments point(std::size_t slot) const;
   const MapMoments& map() const { return map_; }
   /// Replaces the moments of the pose and of all landmarks.

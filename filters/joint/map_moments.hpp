@@ -77,15 +77,10 @@ struct MapMoments {
 
   /// Makes room for at least `rows` rows; new ones are zero.
   void make_room(Eigen::Index rows) {
-    const Eigen::Index held = room(), more = rows - held;
-    if (more <= 0) return;
-    mean.conservativeResize(rows);
-    cross.conservativeResize(rows, 3);
-    covariance.conservativeResize(rows, rows);
-    mean.tail(more).setZero();
-    cross.bottomRows(more).setZero();
-    covariance.bottomRows(more).setZero();
-    covariance.rightCols(more).setZero();
+    if (rows <= room()) return;
+    mean.conservativeResizeLike(Eigen::VectorXd::Zero(rows));
+    cross.conservativeResizeLike(Eigen::MatrixXd::Zero(rows, 3));
+    covariance.conservativeResizeLike(Eigen::MatrixXd::Zero(rows, rows));
   }
 
   void clear(Eigen::Index rows) {

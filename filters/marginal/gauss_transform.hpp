@@ -15,6 +15,20 @@
 
 namespace montecarta::filters {
 
+/// The vector to `place` from `site`, and its squared length.
+template <class Real, std::size_t D>
+struct Separation {
+  std::array<Real, D> way;
+  Real squared{0.0};
+
+  Separation(const std::array<Real, D>& place, const std::array<double, D>& site) {
+    for (std::size_t d = 0; d < D; ++d) {
+      way[d] = place[d] - Real(site[d]);
+      squared += way[d] * way[d];
+    }
+  }
+};
+
 /// Clusters by farthest points (Gonzalez 1985): every new centre is the point farthest from those
 /// before it. The radius is at most twice the least possible one.
 template <std::size_t D>
@@ -56,11 +70,7 @@ class FarthestPoints {
     const auto number = static_cast<std::uint32_t>(centres_.size());
     centres_.push_back(centre);
     for (std::size_t i = 0; i < points_.size(); ++i) {
-      double squared = 0.0;
-      for (std::size_t d = 0; d < D; ++d) {
-        const double off = points_[i][d] - points_[centre][d];
-        squared += off * off;
-      }
+      const double squared = Separation(points_[i], points_[centre]).squared;
       if (squared < distances_[i]) distances_[i] = squared, owners_[i] = number;
     }
     distances_[centre] = 0.0, owners_[centre] = number;
@@ -143,15 +153,10 @@ class GaussTransform {
     sums.fill(Real(0.0));
     monomials.resize(terms_);
     for (std::size_t c = 0; c < centres_.size(); ++c) {
-      std::array<Real, D> off;
-      Real squared(0.0);
-      for (std::size_t d = 0; d < D; ++d) {
-        off[d] = target[d] - Real(sites_[c][d]);
-        squared += off[d] * off[d];
-      }
+      const Separation off(target, sites_[c]);
       const double far = reach_ + radius_;
-      if (!any(squared <= Real(far * far))) continue;
-      fill_monomials(off, Real(exp(-squared)), monomials);
+      if (!any(off.squared <= Real(far * far))) continue;
+      fill_monomials(off.way, Real(exp(-off.squared)), monomials);
       const Charges* coefficients = coefficients_.data() + c * terms_;
       for (std::size_t t = 0; t < terms_; ++t) {
         for (std::size_t n = 0; n < N; ++n) sums[n] += Real(coefficients[t][n]) * monomials[t];
@@ -199,13 +204,8 @@ class GaussTransform {
       ++t;
     });
     for (std::size_t j = 0; j < sources.size(); ++j) {
-      Place off;
-      double squared = 0.0;
-      for (std::size_t d = 0; d < D; ++d) {
-        off[d] = sources[j][d] - sites_[owners_[j]][d];
-        squared += off[d] * off[d];
-      }
-      fill_monomials(off, std::exp(-squared), monomials);
+      const Separation off(sources[j], sites_[owners_[j]]);
+      fill_monomials(off.way, std::exp(-off.squared), monomials);
       for (std::size_t k = 0; k < terms_; ++k) {
         for (std::size_t n = 0; n < N; ++n)
           coefficients_[owners_[j] * terms_ + k][n] += charges[j][n] * monomials[k] * constants[k];

@@ -166,25 +166,18 @@ BasicPose<Real> relative_to(const PoseKernels<N>& mixture, const BasicPose<Real>
   return {target.x, target.y, wrap(Real(target.heading - Real(mixture.reference())))};
 }
 
-/// Calls `call` with Headings::near if no heading can wrap, else with Headings::anywhere.
-template <class Real, std::size_t N, class Call>
-auto by_headings(const PoseKernels<N>& mixture, const BasicPose<Real>& relative, const Call& call) {
-  const Real& h = relative.heading;
-  const Real farthest = max(h, Real(-h));
-  if (any(farthest + Real(mixture.half_range()) >= Real(kPi)))
-    return call.template operator()<Headings::anywhere>();
-  return call.template operator()<Headings::near>();
-}
-
 /// log Sum_j weights_n[j] N(target; m_j, C_j) for every n, summed in the order of the kernels.
 template <class Real, std::size_t N>
 std::array<Real, N> direct_log_sums(const BasicPose<Real>& target, const PoseKernels<N>& mixture) {
   const BasicPose<Real> relative = relative_to(mixture, target);
   std::array<Real, N> sums;
   sums.fill(Real(0.0));
-  by_headings(mixture, relative, [&]<Headings headings>() {
-    add_kernels<headings>(relative, mixture.kernels(), sums);
-  });
+  const Real farthest = max(relative.heading, Real(-relative.heading));
+  if (any(farthest + Real(mixture.half_range()) >= Real(kPi))) {
+    add_kernels<Headings::anywhere>(relative, mixture.kernels(), sums);
+  } else {
+    add_kernels<Headings::near>(relative, mixture.kernels(), sums);
+  }
   return logs_of(sums, relative, mixture);
 }
 
@@ -281,28 +274,18 @@ class KernelSummation {
   /// Writes logs[b] for targets[b]. Blocks are independent of each other.
   void sum(const StepContext& context, std::span<const BasicPose<Real>> targets,
            std::span<std::array<Real, N>> logs) {
-    over_blocks(context, targets.size(),
-                [&](std::size_t b, auto& scratch) { logs[b] = at(targets[b], scratch); });
+    constexpr std::size_t kPairsPerTask = 1U << 14;  // about 20 us
+    const std::size_t pairs_per_block = kLanesOf<Real> * kernels_.kernels().size();
+    const std::size_t per_task = std::max<std::size_t>(1, kPairsPerTask / pairs_per_block);
+    const BlockTasks<Real> tasks(targets.size(), per_task);
+    scratch_.resize(std::max(scratch_.size(), tasks.count()));
+    tasks.run(context, [&](std::size_t task, std::size_t b) {
+      logs[b] = used_ == KernelSums::ifgt ? ifgt_.log_sums(targets[b], kernels_, scratch_[task])
+                                          : direct_log_sums(targets[b], kernels_);
+    });
   }
 
  private:
-  static constexpr std::size_t kLanes = kLanesOf<Real>;
-
-  std::array<Real, N> at(const BasicPose<Real>& target, std::vector<Real>& scratch) const {
-    return used_ == KernelSums::ifgt ? ifgt_.log_sums(target, kernels_, scratch)
-                                     : direct_log_sums(target, kernels_);
-  }
-
-  template <class Body>
-  void over_blocks(const StepContext& context, std::size_t blocks, const Body& body) {
-    constexpr std::size_t kPairsPerTask = 1U << 14;  // about 20 us
-    const std::size_t pairs_per_block = kLanes * kernels_.kernels().size();
-    const std::size_t per_task = std::max<std::size_t>(1, kPairsPerTask / pairs_per_block);
-    const BlockTasks<Real> tasks(blocks, per_task);
-    scratch_.resize(std::max(scratch_.size(), tasks.count()));
-    tasks.run(context, [&](std::size_t task, std::size_t b) { body(b, scratch_[task]); });
-  }
-
   KernelSums asked_, used_ = KernelSums::direct;
   double tolerance_;
   PoseKernels<N> kernels_;
@@ -318,13 +301,14 @@ class KernelRatios {
   using Gaussians = std::vector<PoseGaussian<Real>>;
 
   /// With prior kernels both sums differ only in the weights. If the weights are equal, too, the
-  /// ratio is one for any target, and nothing is summed.
+  /// ratio is one for any target, and nothing is summed. Kernels refined by a scan have different
+  /// covariances, for which the transform cannot be used.
   explicit KernelRatios(const MarginalSettings& settings)
       : is_shared_(settings.kernel == Kernel::prior),
         is_one_(is_shared_ && settings.choice == Choice::by_weight),
         shared_(settings.kernel_sums, settings.kernel_tolerance),
-        numerator_(without_transform(settings.kernel_sums), settings.kernel_tolerance),
-        denominator_(without_transform(settings.kernel_sums), settings.kernel_tolerance),
+        numerator_(KernelSums::direct, settings.kernel_tolerance),
+        denominator_(KernelSums::direct, settings.kernel_tolerance),
         logs_(blocks_for<Real>(settings.particles)),
         log_numerators_(logs_.size()),
         log_denominators_(logs_.size()) {}
@@ -357,11 +341,6 @@ class KernelRatios {
   }
 
  private:
-  /// Kernels refined by a scan have different covariances, for which the transform cannot be used.
-  static KernelSums without_transform(KernelSums method) {
-    return method == KernelSums::ifgt ? KernelSums::direct : method;
-  }
-
   bool is_shared_, is_one_;
   KernelSummation<Real, 2> shared_;
   KernelSummation<Real, 1> numerator_, denominator_;

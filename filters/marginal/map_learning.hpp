@@ -167,12 +167,9 @@ class MapLearning {
     });
     const Pose centre =
         weighted_mean<Real>(context, weights, [&](std::size_t b) { return poses[b]; });
-    const Symmetric2<double> R =
-        Linearised()
-            .initialise(centre, Measurement<double>{seen.range, seen.bearing}, noise_)
-            .covariance;
-    const Point x = solve(R, {1.0, 0.0}), y = solve(R, {0.0, 1.0});
-    return {{mean[0], mean[1]}, {x.x, x.y, y.y}};
+    const LandmarkGaussian<double> one =
+        Linearised().initialise(centre, Measurement<double>{seen.range, seen.bearing}, noise_);
+    return {{mean[0], mean[1]}, inverted(one.covariance)};
   }
 
   /// Updates a landmark that is observed again. `index` selects its random numbers; candidates are
@@ -247,9 +244,9 @@ class MapLearning {
     if (settings_.mode == MapMode::onestep_threshold) evolution.good_enough = -settings_.threshold;
     const SearchBox<double, 2> box{{0.0, 0.0}, {half, half}};
     const EvolutionDraws draws{identity, static_cast<std::uint32_t>(population_.size())};
-    const auto fittest =
-        evolve<double, 2>(population_, box, evolution, draws, scratch_,
-                          OneByOne([&](std::size_t, const Offset& o) { return -cost(place(o)); }));
+    const auto fittest = evolve<double, 2>(
+        population_, box, evolution, draws, scratch_,
+        one_by_one([&](std::size_t, const Offset& o) { return -cost(place(o)); }));
     return place(fittest.best);
   }
   void scatter(const StreamIdentity& identity, double half) {

@@ -57,10 +57,25 @@ class MarginalFilter final : public SlamFilter {
     population_.report().map_size = static_cast<double>(map_.size());
   }
 
-  PoseEstimate estimate() const override;
+  /// The drawn poses, moved between scans by the motion since then like the kernels (EQUATIONS 19).
+  PoseEstimate estimate() const override {
+    if (is_drawn_) return {spread_of(now_, weights(), poses_), std::nullopt};
+    if (!moments_) moments_.emplace(now_, weights(), poses_);
+    return {moments_->moved_by(motion_), std::nullopt};
+  }
   const ScanReport& report() const override { return population_.report(); }
-  void particles(const ParticleColumns& columns) const override;
-  void map(std::span<std::optional<LandmarkEstimate>> landmarks) const override;
+  void particles(const ParticleColumns& columns) const override {
+    const auto drawn = [&](std::size_t b) { return poses_[b]; };
+    population_.write_columns(columns, [&](std::size_t i) {
+      return motion_.from(pose_of_particle<Real>(drawn, i)).mean;
+    });
+  }
+  void map(std::span<std::optional<LandmarkEstimate>> landmarks) const override {
+    for (std::size_t k = 0; k < landmarks.size(); ++k) {
+      const std::size_t slot = association_.slot_of(k);
+      landmarks[k] = slot < map_.size() ? std::optional(estimate_of(map_[slot])) : std::nullopt;
+    }
+  }
 
  private:
   const Weights<Real>& weights() const { return population_.weights(); }
@@ -118,8 +133,8 @@ class MarginalFilter final : public SlamFilter {
     over_blocks(context, [&](std::size_t b) {
       const auto chosen =
           gather_block<Real, PoseGaussian<Real>>(proposal(), population_.ancestors(), b);
-      poses_[b] = draw_from(PoseFactor<Real>(chosen),
-                            context.identity(Draw::kernel_sample, first_particle(b)));
+      const auto first = static_cast<std::uint32_t>(b * kLanesOf<Real>);
+      poses_[b] = draw_from(PoseFactor<Real>(chosen), context.identity(Draw::kernel_sample, first));
     });
   }
 
@@ -130,12 +145,13 @@ class MarginalFilter final : public SlamFilter {
     over_blocks(context, [&](std::size_t b) { population_.weigh(b, likelihood_.at(poses_[b])); });
     ratios_.multiply(context, poses_, population_.weights());
     population_.normalise(context);
-    population_.report().log_likelihood += association_.unmatched_log_density();
+    population_.report().log_likelihood += association_.unmatched_log_densities();
   }
 
   /// Updates the shared map with the weighted poses (EQUATIONS 14).
   void learn_map(const StepContext& context) {
-    const double heading = drawn_mean().heading;
+    const auto drawn = [&](std::size_t b) { return poses_[b]; };
+    const double heading = weighted_mean<Real>(context, weights(), drawn).heading;
     for (const SharedMatch& match : association_.matches())
       learning_.learn(context, match.landmark, heading, poses_, weights(), match.seen,
                       map_[match.landmark]);
@@ -151,12 +167,6 @@ class MarginalFilter final : public SlamFilter {
       body(b);
     });
   }
-  static std::uint32_t first_particle(std::size_t b) {
-    return static_cast<std::uint32_t>(b * kLanesOf<Real>);
-  }
-  Pose drawn_mean() const {
-    return weighted_mean<Real>(now_, weights(), [&](std::size_t b) { return poses_[b]; });
-  }
   /// Discards the particles of the last scan, which are not available afterwards.
   void forget_scan() {
     population_.forget_ancestors();
@@ -164,8 +174,7 @@ class MarginalFilter final : public SlamFilter {
     is_drawn_ = false;
   }
 
-  StepContext now_ =
-      StepContext::before_all_steps();  ///< context of the present step, with its threads
+  StepContext now_ = StepContext::before_all_steps();  ///< the present step, with its threads
   MarginalSettings settings_;
   Belief belief_;
   SharedAssociation association_;
@@ -183,30 +192,6 @@ class MarginalFilter final : public SlamFilter {
   mutable std::optional<CloudMoments> moments_;  ///< moments of the poses, computed on demand
   bool is_drawn_ = false;                        ///< true if the last update() drew the poses
 };
-
-/// The drawn poses, moved between scans by the motion since then like the kernels (EQUATIONS 19).
-template <class Real>
-PoseEstimate MarginalFilter<Real>::estimate() const {
-  if (is_drawn_) return {spread_of(now_, weights(), poses_), std::nullopt};
-  if (!moments_) moments_.emplace(now_, weights(), poses_);
-  return {moments_->moved_by(motion_), std::nullopt};
-}
-
-template <class Real>
-void MarginalFilter<Real>::particles(const ParticleColumns& columns) const {
-  const auto pose_of = [&](std::size_t i) {
-    return motion_.from(pose_of_particle<Real>([&](std::size_t b) { return poses_[b]; }, i)).mean;
-  };
-  population_.write_columns(columns, pose_of);
-}
-
-template <class Real>
-void MarginalFilter<Real>::map(std::span<std::optional<LandmarkEstimate>> landmarks) const {
-  for (std::size_t k = 0; k < landmarks.size(); ++k) {
-    const std::size_t slot = association_.slot_of_row(k);
-    landmarks[k] = slot < map_.size() ? std::optional(estimate_of(map_[slot])) : std::nullopt;
-  }
-}
 
 /// With `Real` = double this is the same filter, one particle at a time, for tests.
 template <class Real, Choice choice>

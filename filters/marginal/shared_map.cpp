@@ -6,7 +6,7 @@
 namespace montecarta::filters {
 
 void SharedAssociation::associate(Scan scan) {
-  association_.pair_by_identity(scan);
+  pair_by_identity(scan);
   sort_out(scan);
 }
 
@@ -22,11 +22,10 @@ void SharedAssociation::associate(Scan scan, const SharedMap& map, bool map_is_e
       const auto v =
           innovation_of(P, s, residual(measurement_of<double>(scan[k]), s), covariance, noise_);
       const double distance = v.squared();
-      searches_[k].offer(slot, distance, distance + std::log(v.S.determinant()),
-                         association_.settings().gate);
+      searches_[k].offer(slot, distance, distance + std::log(v.S.determinant()), settings().gate);
     }
   }
-  association_.pair_nearest(scan, searches_);
+  pair_nearest(scan, searches_);
   sort_out(scan);
 }
 
@@ -35,7 +34,7 @@ void SharedAssociation::sort_out(Scan scan) {
   fresh_.clear();
   unmatched_ = 0;
   for (std::size_t k = 0; k < scan.size(); ++k) {
-    const Pairing& pairing = association_.pairings()[k];
+    const Pairing& pairing = pairings()[k];
     unmatched_ += pairing.kind != PairingKind::matched;
     if (pairing.kind == PairingKind::fresh) fresh_.push_back(scan[k]);
     if (pairing.kind == PairingKind::matched)

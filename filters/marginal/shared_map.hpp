@@ -17,6 +17,11 @@ inline Point solve(const Symmetric2<double>& A, const Point& b) {
   const double y = (b.y - slope * b.x) / (A.yy - slope * A.xy);
   return {(b.x - A.xy * y) / A.xx, y};
 }
+/// A^-1.
+inline Symmetric2<double> inverted(const Symmetric2<double>& A) {
+  const Point x = solve(A, {1.0, 0.0}), y = solve(A, {0.0, 1.0});
+  return {x.x, x.y, y.y};
+}
 
 /// A landmark of the map that all particles share (EQUATIONS 14): its position, and the information
 /// about it given the pose.
@@ -25,10 +30,7 @@ struct SharedLandmark {
   Symmetric2<double> information;  ///< Lambda [1/m^2]
 
   /// Lambda^-1.
-  Symmetric2<double> covariance() const {
-    const Point x = solve(information, {1.0, 0.0}), y = solve(information, {0.0, 1.0});
-    return {x.x, x.y, y.y};
-  }
+  Symmetric2<double> covariance() const { return inverted(information); }
 };
 
 /// All landmarks, in the order of initialisation.
@@ -48,13 +50,11 @@ struct SharedMatch {
 
 /// Associates a scan with the shared map, once for all particles: by identity, or by nearest
 /// neighbour for a Gaussian pose (EQUATIONS 17).
-class SharedAssociation {
+class SharedAssociation : public MapAssociation {
  public:
   explicit SharedAssociation(const FilterSetup& setup)
-      : association_(setup), noise_(SensorNoise::of(setup.belief)) {}
+      : MapAssociation(setup), noise_(SensorNoise::of(setup.belief)) {}
 
-  void clear() { association_.clear(); }
-  bool known() const { return association_.known(); }
   /// Associates by identity.
   void associate(Scan scan);
   /// Associates by nearest neighbour. If `map_is_exact`, the covariance of the map is left out.
@@ -64,20 +64,14 @@ class SharedAssociation {
   const std::vector<SharedMatch>& matches() const { return matches_; }
   /// Detections of new landmarks.
   const std::vector<Detection>& fresh() const { return fresh_; }
-  const AssociationCounts& counts() const { return association_.counts(); }
-  /// Sum over all detections that match no landmark.
-  double unmatched_log_density() const {
-    return association_.unmatched_log_density() * static_cast<double>(unmatched_);
+  /// Sum of unmatched_log_density() over all detections that match no landmark.
+  double unmatched_log_densities() const {
+    return unmatched_log_density() * static_cast<double>(unmatched_);
   }
-  /// Records that a fresh detection became the next landmark of the map.
-  void add(const Detection& fresh) { association_.add(fresh); }
-  /// Slot of row k of the reported map, or a slot that does not exist.
-  std::size_t slot_of_row(std::size_t k) const { return association_.slot_of(k); }
 
  private:
   void sort_out(Scan scan);
 
-  MapAssociation association_;
   SensorNoise noise_;
   std::vector<SharedMatch> matches_;
   std::vector<Detection> fresh_;

@@ -44,19 +44,11 @@ BasicPose<Real> moved_by(const BasicPose<Real>& pose, const BodyStep<Input>& ste
   return {pose.x + way.x, pose.y + way.y, wrap(Real(pose.heading + Real(step.turn)))};
 }
 
-/// One step of a vehicle (EQUATIONS 1; Ankishan eq. (38) prints cos in both rows). Each component
-/// of `control` is the same for all lanes (double) or differs between them (Real); `duration` [s].
-template <class Real, class Input>
-BasicPose<Real> move(const BasicPose<Real>& pose, const ControlOf<Input>& control, double duration,
-                     const Vehicle& vehicle) {
-  return moved_by(pose, body_step(vehicle, control, duration));
-}
-
-/// The same for the control that a filter is given.
+/// One step of a vehicle (EQUATIONS 1; Ankishan eq. (38) prints cos in both rows); `duration` [s].
 template <class Real>
 BasicPose<Real> move(const BasicPose<Real>& pose, const Control& control, double duration,
                      const Vehicle& vehicle) {
-  return move(pose, control.values, duration, vehicle);
+  return moved_by(pose, body_step(vehicle, control, duration));
 }
 
 /// move() with its derivatives at (pose, control). `heading` is the direction of the pose, and

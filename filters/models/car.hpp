@@ -36,7 +36,6 @@ struct Car {
     return {.kind = name == kNames[0] ? Kind::front_axle : Kind::rear_wheel};
   }
   static constexpr std::array kControls = {Quantity::speed, Quantity::steer};
-  static const std::array<VehicleNumber<Car>, 6>& numbers();
 
   static constexpr bool kTurnsByAngle = false;
   static double angle_scale(double /*duration*/) { return 1.0; }
@@ -107,29 +106,30 @@ struct Car {
     return kind == Kind::rear_wheel &&
            1.0 - wheel_left / wheelbase * std::tan(control[1]) < kLeastWheelShare;
   }
-};
 
-inline const std::array<VehicleNumber<Car>, 6>& Car::numbers() {
-  constexpr auto pilot = VehicleUse::pilot;
-  const auto wheelbase_parameter = [] {
-    Parameter parameter = number_parameter("wheelbase", "4", 1e-3, 1000, "between the axles", "m");
-    parameter.example = "2.83";
-    return parameter;
-  };
-  const auto place = [](const char* key, const char* meaning) {
-    return number_parameter(key, "0", -1000, 1000, meaning, "m");
-  };
-  static const std::array<VehicleNumber<Car>, 6> all = {
-      {{wheelbase_parameter(), &Car::wheelbase},
-       {place("wheel_left", "measured rear wheel left of the middle"), &Car::wheel_left},
-       {place("sensor_ahead", "sensor ahead of the rear axle"), &Car::sensor_ahead},
-       {place("sensor_left", "sensor left of the middle"), &Car::sensor_left},
-       {number_parameter("steer_limit_deg", "30", 0.1, 89, "largest steering angle", "deg"),
-        &Car::steer_limit, pilot},
-       {number_parameter("steer_rate_limit_deg", "20", 0.1, 1e5, "fastest turn of the steering",
-                         "deg/s"),
-        &Car::steer_rate_limit, pilot}}};
-  return all;
-}
+  static const std::array<VehicleNumber<Car>, 6>& numbers() {
+    constexpr auto pilot = VehicleUse::pilot;
+    const auto wheelbase_parameter = [] {
+      Parameter parameter =
+          number_parameter("wheelbase", "4", 1e-3, 1000, "between the axles", "m");
+      parameter.example = "2.83";
+      return parameter;
+    };
+    const auto place = [](const char* key, const char* meaning) {
+      return number_parameter(key, "0", -1000, 1000, meaning, "m");
+    };
+    static const std::array<VehicleNumber<Car>, 6> all = {
+        {{wheelbase_parameter(), &Car::wheelbase},
+         {place("wheel_left", "measured rear wheel left of the middle"), &Car::wheel_left},
+         {place("sensor_ahead", "sensor ahead of the rear axle"), &Car::sensor_ahead},
+         {place("sensor_left", "sensor left of the middle"), &Car::sensor_left},
+         {number_parameter("steer_limit_deg", "30", 0.1, 89, "largest steering angle", "deg"),
+          &Car::steer_limit, pilot},
+         {number_parameter("steer_rate_limit_deg", "20", 0.1, 1e5, "fastest turn of the steering",
+                           "deg/s"),
+          &Car::steer_rate_limit, pilot}}};
+    return all;
+  }
+};
 
 }  // namespace montecarta::models

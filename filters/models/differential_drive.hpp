@@ -18,7 +18,6 @@ struct DifferentialDrive {
   const char* name() const { return kNames[0]; }
   static DifferentialDrive named(std::string_view /*name*/) { return {}; }
   static constexpr std::array kControls = {Quantity::speed, Quantity::yaw_rate};
-  static const std::array<VehicleNumber<DifferentialDrive>, 2>& numbers();
 
   static constexpr bool kTurnsByAngle = true;
   static double angle_scale(double duration) { return duration; }
@@ -46,15 +45,15 @@ struct DifferentialDrive {
   /// Distance [m] driven at `speed` [m/s] in the time of a full turn.
   double way_to_turn(double speed) const { return speed * kTwoPi / yaw_rate_limit; }
   static constexpr const char* kTurnLimit = "yaw_rate_limit_deg";
-};
 
-inline const std::array<VehicleNumber<DifferentialDrive>, 2>& DifferentialDrive::numbers() {
-  static const std::array<VehicleNumber<DifferentialDrive>, 2> all = {
-      yaw_rate_limit_of(&DifferentialDrive::yaw_rate_limit),
-      {number_parameter("turn_on_spot_deg", "45", 0.1, 180,
-                        "farther off the way-point it stops and turns on the spot", "deg"),
-       &DifferentialDrive::turn_on_spot, VehicleUse::pilot}};
-  return all;
-}
+  static const std::array<VehicleNumber<DifferentialDrive>, 2>& numbers() {
+    static const std::array<VehicleNumber<DifferentialDrive>, 2> all = {
+        yaw_rate_limit_of(&DifferentialDrive::yaw_rate_limit),
+        {number_parameter("turn_on_spot_deg", "45", 0.1, 180,
+                          "farther off the way-point it stops and turns on the spot", "deg"),
+         &DifferentialDrive::turn_on_spot, VehicleUse::pilot}};
+    return all;
+  }
+};
 
 }  // namespace montecarta::models

@@ -4,9 +4,7 @@
 namespace montecarta::models {
 
 Eigen::Matrix3d pose_jacobian(const MotionJacobians<double>& j) {
-  Eigen::Matrix3d F;
-  F << 1.0, 0.0, j.x_heading, 0.0, 1.0, j.y_heading, 0.0, 0.0, 1.0;
-  return F;
+  return Eigen::Matrix3d{{1.0, 0.0, j.x_heading}, {0.0, 1.0, j.y_heading}, {0.0, 0.0, 1.0}};
 }
 
 ControlJacobian control_jacobian(const MotionJacobians<double>& j) {
@@ -19,27 +17,19 @@ ControlJacobian control_jacobian(const MotionJacobians<double>& j) {
 }
 
 Matrix23 pose_jacobian(const LinearisedObservation<double>& s) {
-  Matrix23 H;
-  H << -s.range_x, -s.range_y, 0.0, -s.bearing_x, -s.bearing_y, -1.0;
-  return H;
+  return Matrix23{{-s.range_x, -s.range_y, 0.0}, {-s.bearing_x, -s.bearing_y, -1.0}};
 }
 
 Eigen::Matrix2d landmark_jacobian(const LinearisedObservation<double>& s) {
-  Eigen::Matrix2d H;
-  H << s.range_x, s.range_y, s.bearing_x, s.bearing_y;
-  return H;
+  return Eigen::Matrix2d{{s.range_x, s.range_y}, {s.bearing_x, s.bearing_y}};
 }
 
 Matrix23 pose_jacobian(const LinearisedPlace<double>& p) {
-  Matrix23 G;
-  G << 1.0, 0.0, p.x_bearing, 0.0, 1.0, p.y_bearing;
-  return G;
+  return Matrix23{{1.0, 0.0, p.x_bearing}, {0.0, 1.0, p.y_bearing}};
 }
 
 Eigen::Matrix2d observation_jacobian(const LinearisedPlace<double>& p) {
-  Eigen::Matrix2d G;
-  G << p.x_range, p.x_bearing, p.y_range, p.y_bearing;
-  return G;
+  return Eigen::Matrix2d{{p.x_range, p.x_bearing}, {p.y_range, p.y_bearing}};
 }
 
 }  // namespace montecarta::models

@@ -19,7 +19,6 @@ struct Omnidirectional {
   static Omnidirectional named(std::string_view /*name*/) { return {}; }
   static constexpr std::array kControls = {Quantity::forward_speed, Quantity::left_speed,
                                            Quantity::yaw_rate};
-  static const std::array<VehicleNumber<Omnidirectional>, 1>& numbers();
 
   static constexpr bool kTurnsByAngle = true;
   static double angle_scale(double duration) { return duration; }
@@ -46,12 +45,12 @@ struct Omnidirectional {
   /// Distance [m] driven at `speed` [m/s] in the time of a full turn.
   double way_to_turn(double speed) const { return speed * kTwoPi / yaw_rate_limit; }
   static constexpr const char* kTurnLimit = "yaw_rate_limit_deg";
-};
 
-inline const std::array<VehicleNumber<Omnidirectional>, 1>& Omnidirectional::numbers() {
-  static const std::array<VehicleNumber<Omnidirectional>, 1> all = {
-      yaw_rate_limit_of(&Omnidirectional::yaw_rate_limit)};
-  return all;
-}
+  static const std::array<VehicleNumber<Omnidirectional>, 1>& numbers() {
+    static const std::array<VehicleNumber<Omnidirectional>, 1> all = {
+        yaw_rate_limit_of(&Omnidirectional::yaw_rate_limit)};
+    return all;
+  }
+};
 
 }  // namespace montecarta::models

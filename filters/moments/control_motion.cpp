@@ -181,8 +181,7 @@ BodyMoments body_moments(const V& vehicle,
   for (std::size_t i = 0; i < kLinear; ++i) {
     parts[i] = {.mean = control[i], .variance = sigma[i] * sigma[i], .at_node = {}};
     for (std::size_t k = 0; k < turning_angles.size(); ++k) {
-      const auto [forward, left, turn] = unit_travel(vehicle, i, 1.0, turning_angles[k], duration);
-      parts[i].at_node[k] = {forward, left, turn};
+      parts[i].at_node[k] = column_of(unit_travel(vehicle, i, 1.0, turning_angles[k], duration));
     }
   }
   if constexpr (V::kTurnsByAngle) {
@@ -283,17 +282,10 @@ Motion motion_of(const FilterOptions& options) {
 
 void advance(MotionIncrement& increment, const Control& control, double duration,
              const Belief& belief, Motion motion) {
-  switch (motion) {
-    case Motion::linearised:
-      increment.advance(control, duration, belief);
-      break;
-    case Motion::quadrature:
-      increment = moved_by_quadrature(increment, control, duration, belief);
-      break;
-    case Motion::unbiased:
-      increment = moved_by_unbiased_controls(increment, control, duration, belief);
-      break;
-  }
+  if (motion == Motion::linearised) return increment.advance(control, duration, belief);
+  increment = motion == Motion::quadrature
+                  ? moved_by_quadrature(increment, control, duration, belief)
+                  : moved_by_unbiased_controls(increment, control, duration, belief);
 }
 
 }  // namespace montecarta::filters

@@ -45,9 +45,7 @@ struct Symmetric3 {
 
 /// Converts to a matrix.
 inline Eigen::Matrix3d symmetric(const Symmetric3<double>& P) {
-  Eigen::Matrix3d matrix;
-  matrix << P.xx, P.xy, P.xh, P.xy, P.yy, P.yh, P.xh, P.yh, P.hh;
-  return matrix;
+  return Eigen::Matrix3d{{P.xx, P.xy, P.xh}, {P.xy, P.yy, P.yh}, {P.xh, P.yh, P.hh}};
 }
 /// Converts from a matrix; only its upper triangle is read.
 inline Symmetric3<double> symmetric_of(const Eigen::Matrix3d& P) {
@@ -134,11 +132,16 @@ struct PoseGaussian {
   Symmetric3<Real> covariance{};
 };
 
+/// The pose in one lane.
+template <class Real>
+Pose of_lane(const BasicPose<Real>& block, std::size_t lane) {
+  return {get(block.x, lane), get(block.y, lane), get(block.heading, lane)};
+}
 /// The Gaussian of the particle in one lane.
 template <class Real>
 PoseGaussian<double> of_lane(const PoseGaussian<Real>& block, std::size_t lane) {
   const auto& [m, P] = block;
-  return {{get(m.x, lane), get(m.y, lane), get(m.heading, lane)},
+  return {of_lane(m, lane),
           {get(P.xx, lane), get(P.xy, lane), get(P.yy, lane), get(P.xh, lane), get(P.yh, lane),
            get(P.hh, lane)}};
 }

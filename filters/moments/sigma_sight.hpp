@@ -55,6 +55,18 @@ class SigmaSight {
     const Cholesky3<Real> L(turned(P, Direction<Real>{axes_.cosine, -axes_.sine}));
     return {{{L.xx, L.yx, L.hx}, {Real(0.0), L.yy, L.hy}, {Real(0.0), Real(0.0), L.hh}}};
   }
+  /// Adds the points along all columns of the square root of P; returns the cross-covariances of P
+  /// with the two components, in the map.
+  std::array<Column3<Real>, 2> add_points(const Symmetric3<Real>& P,
+                                          ObservationMoments<Real>& moments) const {
+    Column3<Real> first{}, second{};
+    for (const Column3<Real>& column : columns(P)) {
+      const Measurement<Real> D = add(column, moments);
+      first = first + Real(rule_.antisymmetric * rule_.spread * D.first) * column;
+      second = second + Real(rule_.antisymmetric * rule_.spread * D.second) * column;
+    }
+    return {in_map(first), in_map(second)};
+  }
   /// Rotates a column from the frame of the sensor into the map.
   Column3<Real> in_map(const Column3<Real>& c) const {
     return {axes_.cosine * c.x - axes_.sine * c.y, axes_.sine * c.x + axes_.cosine * c.y, c.h};
@@ -96,22 +108,15 @@ struct SigmaPointsOf : SigmaPoints {
   Innovation<Real> refine(PoseGaussian<Real>& pose, const LandmarkGaussian<Real>& landmark,
                           const Measurement<Real>& seen, const SensorNoise& noise,
                           const Mask& matched, Evidence<Real>& evidence) const {
-    const SigmaRule& rule = rules().pose;
-    const SigmaSight<Kind, Real> s(pose.mean, landmark.mean, rule);
+    const SigmaSight<Kind, Real> s(pose.mean, landmark.mean, rules().pose);
     ObservationMoments<Real> own{.covariance = {Real(noise.first), Real(0.0), Real(noise.second)}};
-    Column3<Real> first{}, second{};
-    for (const Column3<Real>& column : s.columns(pose.covariance)) {
-      const Measurement<Real> D = s.add(column, own);
-      first = first + Real(rule.antisymmetric * rule.spread * D.first) * column;
-      second = second + Real(rule.antisymmetric * rule.spread * D.second) * column;
-    }
+    const auto [first, second] = s.add_points(pose.covariance, own);
     ObservationMoments<Real> both = own;
-    for (const Column3<Real>& column : s.columns(in_plane(landmark.covariance)))
-      s.add(column, both);
+    s.add_points(in_plane(landmark.covariance), both);
     Innovation<Real> whole = s.innovation(seen, both);
     Innovation<Real> proposal =
         map_uncertainty() == MapUncertainty::on ? whole : s.innovation(seen, own);
-    proposal.first = s.in_map(first), proposal.second = s.in_map(second);
+    proposal.first = first, proposal.second = second;
     const auto use = matched && s.usable();
     condition(pose, proposal, use);
     weigh(Kind(), density_of(whole, use), use, matched, evidence);
@@ -121,18 +126,12 @@ struct SigmaPointsOf : SigmaPoints {
   Innovation<Real> update(LandmarkGaussian<Real>& landmark, const BasicPose<Real>& pose,
                           const Measurement<Real>& seen, const SensorNoise& noise,
                           const Mask& matched, Weighed& evidence) const {
-    const SigmaRule& rule = rules().landmark;
-    const SigmaSight<Kind, Real> s(pose, landmark.mean, rule);
+    const SigmaSight<Kind, Real> s(pose, landmark.mean, rules().landmark);
     ObservationMoments<Real> moments{
         .covariance = {Real(noise.first), Real(0.0), Real(noise.second)}};
-    Column3<Real> first{}, second{};
-    for (const Column3<Real>& column : s.columns(in_plane(landmark.covariance))) {
-      const Measurement<Real> D = s.add(column, moments);  // a landmark moves opposite to the pose
-      first = first - Real(rule.antisymmetric * rule.spread * D.first) * column;
-      second = second - Real(rule.antisymmetric * rule.spread * D.second) * column;
-    }
+    const auto [first, second] = s.add_points(in_plane(landmark.covariance), moments);
     Innovation<Real> v = s.innovation(seen, moments);
-    v.first = s.in_map(first), v.second = s.in_map(second);
+    v.first = Column3<Real>{} - first, v.second = Column3<Real>{} - second;  // opposite to the pose
     const auto use = matched && s.usable();
     weigh(Kind(), condition(landmark, v, use), use, matched, evidence);
     return v;

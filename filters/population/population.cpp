@@ -42,14 +42,16 @@ PoseMoments CloudMoments::moved_by(const MotionIncrement& increment) const {
   return {mean, symmetric(spread + own)};
 }
 
-std::vector<Parameter> population_options() {
-  return {
+std::vector<Parameter> population_options(std::initializer_list<std::vector<Parameter>> others) {
+  std::vector<Parameter> options{
       count_parameter("particles", "100", 1, 1e6, "number of particles"),
       choice_parameter("resampling", "systematic", kResamplings,
                        "resampling scheme (EQUATIONS 18)"),
       number_parameter(
           "resample_below", "0.5", 0, 1,
           "resample if the ESS is below this share of the particles; Bailey's simulator has 0.75")};
+  for (const auto& more : others) options.insert(options.end(), more.begin(), more.end());
+  return options;
 }
 
 PopulationSettings population_settings(const FilterOptions& options) {

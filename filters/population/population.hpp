@@ -44,9 +44,7 @@ std::array<double, N> weighted_sums(const StepContext& context, const Weights<Re
 /// The pose of particle i. `pose_of(block)` gives the poses of one block.
 template <class Real, class PoseOf>
 Pose pose_of_particle(const PoseOf& pose_of, std::size_t i) {
-  const BasicPose<Real> block = pose_of(i / kLanesOf<Real>);
-  const std::size_t lane = i % kLanesOf<Real>;
-  return {get(block.x, lane), get(block.y, lane), get(block.heading, lane)};
+  return of_lane<Real>(pose_of(i / kLanesOf<Real>), i % kLanesOf<Real>);
 }
 
 /// Weighted mean of poses, by differences from the heading of the heaviest one (EQUATIONS 19).
@@ -233,8 +231,10 @@ struct PopulationSettings {
   double resample_below = 0.5;  ///< resample if ESS < this times particles
 };
 
-/// The options `particles`, `resampling` and `resample_below`, in the order of the documentation.
-std::vector<Parameter> population_options();
+/// The options `particles`, `resampling` and `resample_below`, and then `others`, in the order of
+/// the documentation.
+std::vector<Parameter> population_options(
+    std::initializer_list<std::vector<Parameter>> others = {});
 /// Reads the options of population_options().
 PopulationSettings population_settings(const FilterOptions& options);
 

@@ -177,14 +177,11 @@ void RelativeGaussian::bends(std::vector<double>& bends) const {
 }
 
 Eigen::Index RelativeGaussian::add_rows(Eigen::Index count) {
-  const Eigen::Index first = std::exchange(rows_, rows_ + count), held = mean_.size();
+  const Eigen::Index first = std::exchange(rows_, rows_ + count);
   const Eigen::Index room = (rows_ + kPack - 1) / kPack * kPack;
-  if (room > held) {
-    mean_.conservativeResize(room);
-    mean_.tail(room - held).setZero();
-    P_.conservativeResize(room, room);
-    P_.bottomRows(room - held).setZero();
-    P_.rightCols(room - held).setZero();
+  if (room > mean_.size()) {
+    mean_.conservativeResizeLike(Eigen::VectorXd::Zero(room));
+    P_.conservativeResizeLike(Eigen::MatrixXd::Zero(room, room));
   }
   return first;
 }
@@ -202,11 +199,8 @@ void RelativeGaussian::keep_rows() {
   const Eigen::Index room = (rows_ + kPack - 1) / kPack * kPack;
   Eigen::VectorXd mean = Eigen::VectorXd::Zero(room);
   Eigen::MatrixXd P = Eigen::MatrixXd::Zero(room, room);
-  for (Eigen::Index j = 0; j < rows_; ++j) {
-    const Eigen::Index from = kept[static_cast<std::size_t>(j)];
-    mean(j) = mean_(from);
-    for (Eigen::Index i = 0; i < rows_; ++i) P(i, j) = P_(kept[static_cast<std::size_t>(i)], from);
-  }
+  mean.head(rows_) = mean_(kept);
+  P.topLeftCorner(rows_, rows_) = P_(kept, kept);
   mean_.swap(mean);
   P_.swap(P);
   for (Eigen::Index& row : chain_.displacements) row = now[static_cast<std::size_t>(row)];

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/smoothing/smoother.hpp"
 
+#include "filters/joint/joint_belief.hpp"
+#include "filters/moments/control_motion.hpp"
 #include "filters/smoothing/relative_laplace.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace montecarta::filters {
 namespace {
@@ -89,130 +92,153 @@ double GaussNewton::take_step(const FactorGraph& graph, double before, GraphEsti
   }
 }
 
-Smoother::Smoother(const FilterSetup& setup)
-    : model_(setup.belief),
-      motion_kind_(motion_of(setup.options)),
-      moments_(moments_of(setup.options)),
-      share_(setup.options.number("relinearise")),
-      belief_(setup, Retraction::invariant, static_cast<int>(setup.options.integer("iterations")),
-              moments_),
-      solver_(SensorNoise::of(setup.belief)) {}
+namespace {
 
-void Smoother::start(const Pose& start) {
-  belief_.start(start);
-  motion_.restart();
-  graph_.start(start);
-  estimate_.clear();
-  linearised_at_.clear();
-  solved_poses_ = 0;
-  report_ = {};
-}
+/// Full smoothing (EQUATIONS 21): keeps all poses at scans and all landmarks, and linearises all
+/// measurements again when the estimate has moved. Until then, the newest pose and the map, with
+/// all other poses integrated out, are a Gaussian that the joint filter updates from scan to scan.
+/// A scan between two solutions therefore costs as much as in EKF-SLAM.
+class Smoother final : public SlamFilter {
+ public:
+  explicit Smoother(const FilterSetup& setup)
+      : model_(setup.belief),
+        motion_kind_(motion_of(setup.options)),
+        moments_(moments_of(setup.options)),
+        share_(setup.options.number("relinearise")),
+        belief_(setup, Retraction::invariant, static_cast<int>(setup.options.integer("iterations")),
+                moments_),
+        solver_(SensorNoise::of(setup.belief)) {}
 
-void Smoother::predict(const StepContext& /*context*/, const Control& control, double duration) {
-  advance(motion_, control, duration, model_, motion_kind_);
-}
+  void start(const Pose& start) override {
+    belief_.start(start);
+    motion_.restart();
+    graph_.start(start);
+    estimate_.clear();
+    linearised_at_.clear();
+    solved_poses_ = 0;
+    report_ = {};
+  }
+  void predict(const StepContext& /*context*/, const Control& control, double duration) override {
+    advance(motion_, control, duration, model_, motion_kind_);
+  }
+  void update(const StepContext& /*context*/, Scan scan) override {
+    belief_.update_with(motion_, scan);
+    report_update();
+    belief_.initialise_landmarks(scan);
+    report_.map_size = static_cast<double>(belief_.gaussian().landmarks());
+    add_factors(scan);
+    motion_.restart();
+    if (is_due()) solve();
+  }
+  PoseEstimate estimate() const override { return {belief_.pose_after(motion_), std::nullopt}; }
+  const ScanReport& report() const override { return report_; }
+  void map(std::span<std::optional<LandmarkEstimate>> landmarks) const override {
+    for (std::size_t k = 0; k < landmarks.size(); ++k) landmarks[k] = belief_.landmark(k);
+  }
 
-void Smoother::update(const StepContext& /*context*/, Scan scan) {
-  belief_.update_with(motion_, scan);
-  report_update();
-  belief_.initialise_landmarks(scan);
-  report_.map_size = static_cast<double>(belief_.gaussian().landmarks());
-  add_factors(scan);
-  motion_.restart();
-  if (is_due()) solve();
-}
+  /// With `moments = pushed` the estimate is that of a separate solution, by Laplace's
+  /// approximation in relative coordinates. Otherwise it is that of the Gaussian of the joint
+  /// filter, and also if the solution fails, which counts as a numerical fault.
+  std::optional<JointEstimate> joint(std::size_t landmarks) const override {
+    if (moments_ != Moments::pushed || graph_.landmarks() == 0) return belief_.joint(landmarks);
+    if (const auto solved = solved_joint()) {
+      return joint_report(*solved, belief_.association(), landmarks, [&](std::size_t slot) {
+        return slot < graph_.landmarks() ? 3 + row_of(slot) : Eigen::Index{-1};
+      });
+    }
+    JointEstimate carried = belief_.joint(landmarks);
+    carried.numerical_faults = 1;
+    return carried;
+  }
 
-void Smoother::report_update() {
-  report_ = {};
-  report_.log_likelihood = belief_.outcome().log_likelihood;
-  report_.numerical_faults = belief_.outcome().faults;
-  report_.association = belief_.association().counts();
-  for (const JointBelief::UsedDetection& used : belief_.used_detections()) {
-    if (const auto L = factor(used.covariance)) {
-      report_.nis += L->whiten(used.innovation).squaredNorm();
-      report_.nis_dof += static_cast<std::uint32_t>(components_of(model_.sensor).size());
+ private:
+  void add_factors(Scan scan) {
+    graph_.add_pose(motion_);
+    estimate_.add_pose(graph_, belief_.gaussian().pose().mean);
+    for (const JointBelief::UsedDetection& used : belief_.used_detections()) {
+      const std::uint32_t landmark = belief_.association().pairings()[used.detection].landmark;
+      graph_.add_observation(landmark, observation_of(scan[used.detection]));
+    }
+    for (std::size_t k = 0; k < scan.size(); ++k) {
+      if (belief_.association().pairings()[k].kind != PairingKind::fresh) continue;
+      const std::size_t landmark = graph_.landmarks();
+      const Eigen::Vector2d place = belief_.gaussian().landmark(landmark).mean;
+      graph_.add_observation(static_cast<std::uint32_t>(landmark), observation_of(scan[k]));
+      estimate_.add_landmark({place.x(), place.y()});
+      linearised_at_.push_back(place);
     }
   }
-}
-
-void Smoother::add_factors(Scan scan) {
-  graph_.add_pose(motion_);
-  estimate_.add_pose(graph_, belief_.gaussian().pose().mean);
-  for (const JointBelief::UsedDetection& used : belief_.used_detections()) {
-    const std::uint32_t landmark = belief_.association().pairings()[used.detection].landmark;
-    graph_.add_observation(landmark, observation_of(scan[used.detection]));
+  void report_update() {
+    report_ = {};
+    report_.log_likelihood = belief_.outcome().log_likelihood;
+    report_.numerical_faults = belief_.outcome().faults;
+    report_.association = belief_.association().counts();
+    for (const JointBelief::UsedDetection& used : belief_.used_detections()) {
+      if (const auto L = factor(used.covariance)) {
+        report_.nis += L->whiten(used.innovation).squaredNorm();
+        report_.nis_dof += static_cast<std::uint32_t>(components_of(model_.sensor).size());
+      }
+    }
   }
-  for (std::size_t k = 0; k < scan.size(); ++k) {
-    if (belief_.association().pairings()[k].kind != PairingKind::fresh) continue;
-    const std::size_t landmark = graph_.landmarks();
-    const Eigen::Vector2d place = belief_.gaussian().landmark(landmark).mean;
-    graph_.add_observation(static_cast<std::uint32_t>(landmark), observation_of(scan[k]));
-    estimate_.add_landmark({place.x(), place.y()});
-    linearised_at_.push_back(place);
+
+  /// Landmarks in view converge by themselves and may wait; others move when a loop closes. Far
+  /// ones (CompressedGaussian) move with those near the vehicle and are not tested.
+  bool is_due() const {
+    const bool may_wait = static_cast<double>(graph_.poses() - solved_poses_) <
+                          kSpacing * static_cast<double>(graph_.poses());
+    const auto scan = graph_.observations_of(graph_.poses() - 1);
+    const auto is_seen = [&](std::size_t l) {
+      return std::ranges::find(scan, l, &FactorGraph::Observation::landmark) != scan.end();
+    };
+    for (std::size_t l = 0; l < linearised_at_.size(); ++l) {
+      if (belief_.gaussian().is_near(l) && has_moved(l) && !(may_wait && is_seen(l))) return true;
+    }
+    return false;
   }
-}
-
-/// Landmarks in view converge by themselves and may wait; others move when a loop closes. Far ones
-/// (CompressedGaussian) move with those near the vehicle and are not tested.
-bool Smoother::is_due() const {
-  const bool may_wait = static_cast<double>(graph_.poses() - solved_poses_) <
-                        kSpacing * static_cast<double>(graph_.poses());
-  const auto scan = graph_.observations_of(graph_.poses() - 1);
-  const auto is_seen = [&](std::size_t l) {
-    return std::ranges::find(scan, l, &FactorGraph::Observation::landmark) != scan.end();
-  };
-  for (std::size_t l = 0; l < linearised_at_.size(); ++l) {
-    if (belief_.gaussian().is_near(l) && has_moved(l) && !(may_wait && is_seen(l))) return true;
+  bool has_moved(std::size_t landmark) const {
+    const LandmarkEstimate now = belief_.gaussian().landmark(landmark);
+    const auto L = factor(now.covariance);
+    return L && L->whiten(now.mean - linearised_at_[landmark]).norm() > share_;
   }
-  return false;
-}
-
-bool Smoother::has_moved(std::size_t landmark) const {
-  const LandmarkEstimate now = belief_.gaussian().landmark(landmark);
-  const auto L = factor(now.covariance);
-  return L && L->whiten(now.mean - linearised_at_[landmark]).norm() > share_;
-}
-
-void Smoother::solve() {
-  if (!solver_.solve(graph_, kTolerance, estimate_)) {
-    ++report_.numerical_faults;
-    return;
+  void solve() {
+    if (!solver_.solve(graph_, kTolerance, estimate_)) {
+      ++report_.numerical_faults;
+      return;
+    }
+    PoseMoments pose{estimate_.poses.back(), {}};
+    solver_.elimination().covariance(pose.covariance, map_);
+    for (std::size_t l = 0; l < estimate_.landmarks.size(); ++l) {
+      linearised_at_[l] = to_vector(estimate_.landmarks[l]);
+      map_.mean.segment<2>(row_of(l)) = linearised_at_[l];
+    }
+    belief_.replace(pose, map_);
+    solved_poses_ = graph_.poses();
   }
-  PoseMoments pose{estimate_.poses.back(), {}};
-  solver_.elimination().covariance(pose.covariance, map_);
-  for (std::size_t l = 0; l < estimate_.landmarks.size(); ++l) {
-    linearised_at_[l] = to_vector(estimate_.landmarks[l]);
-    map_.mean.segment<2>(row_of(l)) = linearised_at_[l];
+
+  /// Moments of the newest pose and the landmarks, in the order of the graph.
+  std::optional<JointEstimate> solved_joint() const {
+    GraphEstimate solved = estimate_;
+    GaussNewton solver(SensorNoise::of(model_));
+    if (!solver.solve(graph_, kTolerance, solved)) return std::nullopt;
+    return RelativeLaplace().of(graph_, solved, solver.elimination());
   }
-  belief_.replace(pose, map_);
-  solved_poses_ = graph_.poses();
-}
 
-PoseEstimate Smoother::estimate() const { return {belief_.pose_after(motion_), std::nullopt}; }
+  Belief model_;
+  Motion motion_kind_;
+  Moments moments_;
+  double share_;  ///< standard deviations that a landmark may move before a new solution
+  JointBelief belief_;
+  MotionIncrement motion_;  ///< since the last scan
+  FactorGraph graph_;
+  GraphEstimate estimate_;
+  GaussNewton solver_;
+  std::vector<Eigen::Vector2d> linearised_at_;  ///< {landmark} [m]
+  std::size_t solved_poses_ = 0;                ///< number of poses at the last solution
+  MapMoments map_;                              ///< scratch
+  ScanReport report_;
+};
 
-void Smoother::map(std::span<std::optional<LandmarkEstimate>> landmarks) const {
-  for (std::size_t k = 0; k < landmarks.size(); ++k) landmarks[k] = belief_.landmark(k);
-}
-
-std::optional<JointEstimate> Smoother::joint(std::size_t landmarks) const {
-  if (moments_ != Moments::pushed || graph_.landmarks() == 0) return belief_.joint(landmarks);
-  if (const auto solved = solved_joint()) {
-    return joint_report(*solved, belief_.association(), landmarks, [&](std::size_t slot) {
-      return slot < graph_.landmarks() ? 3 + row_of(slot) : Eigen::Index{-1};
-    });
-  }
-  JointEstimate carried = belief_.joint(landmarks);
-  carried.numerical_faults = 1;
-  return carried;
-}
-
-/// Moments of the newest pose and the landmarks, in the order of the graph.
-std::optional<JointEstimate> Smoother::solved_joint() const {
-  GraphEstimate solved = estimate_;
-  GaussNewton solver(SensorNoise::of(model_));
-  if (!solver.solve(graph_, kTolerance, solved)) return std::nullopt;
-  return RelativeLaplace().of(graph_, solved, solver.elimination());
-}
+}  // namespace
 
 FilterKind smoother_kind() {
   return {

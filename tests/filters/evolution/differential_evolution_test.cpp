@@ -58,7 +58,7 @@ Evolved<Real, 3> evolved(Candidates<Real>& population, const EvolutionSettings& 
                          const Objective& objective, std::uint32_t first = 0) {
   EvolutionScratch<Real, 3> scratch;
   return evolve<Real, 3>(population, box<Real>(), settings, draws(first), scratch,
-                         OneByOne(objective));
+                         one_by_one(objective));
 }
 
 TEST(DifferentialEvolution, FindsTheTopOfAQuadraticAcrossTheBackwardDirection) {

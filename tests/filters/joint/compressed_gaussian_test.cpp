@@ -96,7 +96,7 @@ void expect_equal_maps(const JointGaussian& plain, const CompressedGaussian& com
   ASSERT_EQ(plain.landmarks(), compressed.landmarks());
   const MapMoments whole = compressed.map();
   for (std::size_t slot = 0; slot < plain.landmarks(); ++slot) {
-    const LandmarkEstimate a = plain.landmark(slot), b = compressed.landmark(slot);
+    const PointMoments a = plain.point(slot), b = compressed.point(slot);
     EXPECT_LT((a.mean - b.mean).norm(), kRounding) << "landmark " << slot;
     EXPECT_LT((a.covariance - b.covariance).norm(), kRounding * a.covariance.norm());
     EXPECT_EQ(b.covariance, b.covariance.transpose());

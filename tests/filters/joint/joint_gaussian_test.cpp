@@ -44,7 +44,7 @@ Eigen::VectorXd mean_of(const JointGaussian& gaussian) {
   const Pose& pose = gaussian.pose().mean;
   mean.head<3>() << pose.x, pose.y, pose.heading;
   for (std::size_t k = 0; k < gaussian.landmarks(); ++k) {
-    mean.segment<2>(3 + 2 * static_cast<Eigen::Index>(k)) = gaussian.landmark(k).mean;
+    mean.segment<2>(3 + 2 * static_cast<Eigen::Index>(k)) = gaussian.point(k).mean;
   }
   return mean;
 }
