@@ -82,7 +82,6 @@ extern template std::unique_ptr<SlamFilter> make_fastslam2<Lanes>(const FilterSe
 std::unique_ptr<SlamFilter> make_fastslam1_of_sensor(const FilterSetup& setup);
 std::unique_ptr<SlamFilter> make_fastslam2_of_sensor(const FilterSetup& setup);
 
-/// Lines for the table of factory.cpp.
 FilterKind fastslam1_kind();
 FilterKind fastslam2_kind();
 FilterKind ufastslam_kind();

@@ -44,10 +44,6 @@ void take_out(Eigen::Index longest, double squared, Eigen::MatrixXd& columns,
 /// Largest map without far landmarks. In smaller ones, expanding costs more than is saved.
 constexpr std::size_t kSmallMap = 100;
 
-double distance_squared(const Pose& pose, const Eigen::Vector2d& place) {
-  return (place - place_of(pose)).squaredNorm();
-}
-
 /// Number of landmarks around the vehicle that are near. A detection costs the square of this
 /// number, but with more near landmarks it takes longer until a far one is observed.
 constexpr std::size_t kNear = 30;
@@ -62,7 +58,10 @@ constexpr std::size_t kDetectionsUncompressed = 5000;
 void Basis::span(Eigen::MatrixXd& columns, Retraction retraction) {
   const Eigen::Index width = retraction == Retraction::invariant ? 2 : 1;
   const Eigen::Index most = std::min(width * columns.cols(), columns.rows());
-  make_room(columns, most + 1);
+  if (vectors_.rows() != columns.rows() || vectors_.cols() <= most) {
+    vectors_.resize(columns.rows(), most + 1);
+  }
+  coefficients_.resize(most + 1, columns.cols());
   double least_squared = 0.0;
   for (size_ = 0; size_ < most; size_ += width) {
     const auto [longest, squared] = longest_of(columns);
@@ -78,13 +77,6 @@ void Basis::span(Eigen::MatrixXd& columns, Retraction retraction) {
   if (size_ % 2 == 0) return;
   vectors_.col(size_).setZero();
   coefficients_.row(size_++).setZero();
-}
-
-void Basis::make_room(const Eigen::MatrixXd& columns, Eigen::Index most) {
-  if (vectors_.rows() != columns.rows() || vectors_.cols() < most) {
-    vectors_.resize(columns.rows(), most);
-  }
-  coefficients_.resize(most, columns.cols());
 }
 
 CompressedGaussian::CompressedGaussian(const Belief& belief, Retraction retraction,
@@ -182,8 +174,7 @@ bool CompressedGaussian::is_out_of_reach(std::size_t slot, const Drift& drift, d
                                          double sigmas) const {
   if (is_near(slot)) return false;
   const auto& [share, variance] = far_[slot];
-  const double distance =
-      std::sqrt(distance_squared(pose().mean, whole_.mean.segment<2>(row_of(slot))));
+  const double distance = (whole_.mean.segment<2>(row_of(slot)) - place_of(pose().mean)).norm();
   const double spread = std::sqrt(variance + share * share * drift.variance) +
                         std::sqrt(pose().covariance.topLeftCorner<2, 2>().trace());
   const Belief& belief = near_.belief();

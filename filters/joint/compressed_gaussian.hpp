@@ -31,8 +31,6 @@ class Basis {
   auto coefficients() const { return coefficients_.topRows(size_); }
 
  private:
-  void make_room(const Eigen::MatrixXd& columns, Eigen::Index most);
-
   Eigen::MatrixXd vectors_, coefficients_;
   Eigen::Index size_ = 0;
 };

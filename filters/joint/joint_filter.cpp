@@ -98,14 +98,11 @@ Parameter iterations_option() {
       "number of times that a detection is linearised again at the updated estimate");
 }
 
-int iterations(const FilterOptions& options) {
-  return static_cast<int>(options.integer("iterations"));
-}
-
 std::unique_ptr<SlamFilter> one_gaussian(const FilterSetup& setup, Retraction retraction) {
+  const auto iterations = static_cast<int>(setup.options.integer("iterations"));
   return std::make_unique<JointFilter>(setup,
                                        JointFilterSettings{.retraction = retraction,
-                                                           .iterations = iterations(setup.options),
+                                                           .iterations = iterations,
                                                            .motion = motion_of(setup.options),
                                                            .moments = moments_of(setup.options)});
 }

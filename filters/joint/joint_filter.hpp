@@ -16,7 +16,6 @@ std::unique_ptr<SlamFilter> make_ekf_slam(const FilterSetup& setup);
 /// that detections give no information about the unobservable pose of the map in the world.
 std::unique_ptr<SlamFilter> make_riekf_slam(const FilterSetup& setup);
 
-/// Lines for the table of filters.
 FilterKind ekf_slam_kind();
 FilterKind riekf_slam_kind();
 /// EKF-SLAM with the right unobservable directions of the linearised system (EQUATIONS 15).

@@ -12,15 +12,6 @@
 namespace montecarta::filters {
 namespace {
 
-Eigen::Matrix2d observation_noise(const Belief& belief) {
-  return deviations_of(belief.sensor, belief).cwiseAbs2().asDiagonal();
-}
-
-/// Displacement by a motion of a vehicle with direction `heading`, in the map frame.
-Point way_of(const MotionIncrement& motion, const Direction<double>& heading) {
-  return in_world(heading, motion.pose().x, motion.pose().y);
-}
-
 /// Iterations stop if the innovation changes by less than this, in units of its standard deviation.
 constexpr double kConverged = 1e-4;
 
@@ -84,7 +75,7 @@ std::optional<Differences> differences(const Observe& observe, const Eigen::Vect
 
 JointGaussian::JointGaussian(const Belief& belief, Retraction retraction, std::size_t room)
     : belief_(belief),
-      observation_noise_(observation_noise(belief)),
+      observation_noise_(deviations_of(belief.sensor, belief).cwiseAbs2().asDiagonal()),
       wraps_(wraps_of(belief.sensor)),
       retraction_(retraction) {
   grow(room);
@@ -120,7 +111,7 @@ MapMoments& JointGaussian::replace_map(std::size_t n_points) {
 
 LinearisedMotion JointGaussian::linearised(const MotionIncrement& motion) const {
   const Direction<double> heading = direction_of(pose_.mean.heading);
-  const Point way = way_of(motion, heading);
+  const Point way = in_world(heading, motion.pose().x, motion.pose().y);
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
   turn.topLeftCorner<2, 2>() << heading.cosine, -heading.sine, heading.sine, heading.cosine;
   return {.mean = {pose_.mean.x + way.x, pose_.mean.y + way.y,

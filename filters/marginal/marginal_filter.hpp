@@ -199,7 +199,6 @@ std::unique_ptr<SlamFilter> make_marginal(const FilterSetup& setup) {
   return std::make_unique<MarginalFilter<Real>>(setup, marginal_settings(setup.options, choice));
 }
 
-/// Lines for the table of factory.cpp.
 FilterKind marginal_kind();
 FilterKind ampf_de_kind();
 

@@ -31,7 +31,6 @@ class GaussNewton {
   GraphEstimate given_, tried_;  ///< scratch
 };
 
-/// Line for the table of filters.
 FilterKind smoother_kind();
 
 }  // namespace montecarta::filters
