@@ -9,12 +9,12 @@
 
 namespace montecarta::analysis {
 
-/// What to do with a report that is already there.
+/// The treatment of a report that is already there.
 enum class ExistingReport { refuse, replace };
 
 struct ReportOptions {
   double level = 0.95;               ///< of the NEES bounds
-  std::optional<double> within;      ///< what counts as consistent; default: as the study says
+  std::optional<double> within;      ///< margin of consistent cells; default: that of the study
   std::optional<std::uint64_t> run;  ///< run that is drawn and replayed; default: first complete
   ExistingReport existing = ExistingReport::refuse;
   const Parallel* parallel = &Parallel::serial();

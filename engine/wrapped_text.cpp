@@ -26,7 +26,7 @@ std::size_t width_in_environment() {
   return width > 0 ? static_cast<std::size_t>(width) : kUsualWidth;
 }
 
-/// In place of a space at which no line ends.
+/// The character that represents a space at which no line ends.
 constexpr char kKept = '\x1f';
 
 /// A number and its percent sign are one word.

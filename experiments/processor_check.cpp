@@ -9,8 +9,8 @@
 
 namespace {
 
-/// Whether the processor has the floating-point instructions of x86-64-v3 and, if AVX-512 is used,
-/// of x86-64-v4.
+/// Returns whether the processor has the floating-point instructions of x86-64-v3 and, if AVX-512
+/// is used, of x86-64-v4.
 bool has_what_is_needed() {
   __builtin_cpu_init();
 #ifdef MONTECARTA_NEEDS_AVX512

@@ -14,7 +14,7 @@
 namespace montecarta::sources {
 namespace {
 
-/// "path:line: what" for every line of C++ outside tests that is `broken`.
+/// "path:line: message" for every line of C++ outside tests that is `broken`.
 std::vector<std::string> faults(const Tree& tree, const std::string& what,
                                 const std::function<bool(const std::string&)>& broken) {
   std::vector<std::string> found;

@@ -12,7 +12,7 @@
 
 namespace montecarta::analysis {
 
-/// What a run met that may be its own: views into a file's description.
+/// The drive of one run: views into a file's description.
 struct RunDrive {
   std::span<const double> scan_times;         ///< [s]
   std::span<const std::uint32_t> scan_steps;  ///< step after which each scan was taken
@@ -29,7 +29,7 @@ inline RunDrive drive_of_run(const ResultFile& file, std::uint64_t run) {
   return {own.scan_times, own.scan_steps, own.start, own.references};
 }
 
-/// Which columns are read: those that every run has, or all that a run has.
+/// The columns that are read: those that every run has, or all that a run has.
 enum class Reach : std::uint8_t { every_run, full_run };
 
 /// Reads the runs of one cell at its scans. Any number of threads may call read(), each with its
@@ -41,7 +41,7 @@ class RunReader {
   /// Number of particles of the cell; 0 if it has none.
   std::size_t particles() const { return cell_->particles; }
 
-  /// Memory for what is read and not kept.
+  /// Memory for values that are read and not kept.
   using Scratch = std::vector<double>;
 
   /// Fills `rows` with run index `i` (0-based in the file), which is complete. Throws StudyError if
@@ -49,7 +49,7 @@ class RunReader {
   void read(std::size_t i, RunRows& rows, Scratch& scratch) const;
 
  private:
-  /// Whether run index `i` has the column, and is to give it.
+  /// Returns whether run index `i` has the column, and is to give it.
   bool has(std::string_view column, std::size_t i) const;
   void read_truth(std::size_t i, std::vector<double>& out) const;
   void read_path(std::size_t i, std::vector<double>& out) const;
@@ -79,7 +79,7 @@ class RunReader {
   std::vector<double> cpu_seconds_;
 };
 
-/// One run alone, index `i`, with what is stored only of runs in full.
+/// One run alone, index `i`, with the columns that are stored only of runs in full.
 RunRows read_run(const ResultFile& file, const StoredCell& cell, std::size_t i);
 
 }  // namespace montecarta::analysis

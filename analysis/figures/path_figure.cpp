@@ -68,7 +68,7 @@ void include(const std::vector<FigureData>& all, const std::string& name, std::s
   }
 }
 
-/// Without the few fixes that lie far from all others.
+/// Drops the few fixes that lie far from all others.
 Bounds bounds_of_fixes(const Frame& fixes) {
   constexpr double kWild = 0.01;
   Bounds bounds;

@@ -23,7 +23,7 @@ struct Ellipse {
   double angle = 0.0;  ///< [deg] of the major axis
 };
 
-/// Where a Gaussian lies within two standard deviations along each axis. `xx`, `xy`, `yy` [m^2]; a
+/// The interval of two standard deviations of a Gaussian along each axis. `xx`, `xy`, `yy` [m^2]; a
 /// covariance with a negative eigenvalue has a diameter of NaN, which is not drawn.
 Ellipse two_sigma_ellipse(double x, double y, double xx, double xy, double yy);
 

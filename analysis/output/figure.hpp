@@ -106,8 +106,8 @@ struct ChartPanel {
   std::string cell = {};  ///< a panel of one cell: hidden with it
   std::vector<ChartMarks> marks = {};
   std::vector<std::string> x_names = {}, y_names = {};  ///< at 0, 1, 2, ..., in place of numbers
-  /// In place of curves. Column k begins at x[k] and ends where the next one begins, the last one
-  /// at Chart::x_to.
+  /// The columns of a figure without curves. Column k begins at x[k] and ends where the next one
+  /// begins, the last one at Chart::x_to.
   ChartStrips strips = {};
 };
 

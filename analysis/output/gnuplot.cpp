@@ -49,7 +49,8 @@ double panel_height(const Chart& chart, double panel_width) {
   return chart.panels.size() == 1 ? kSingleHeight : kUsualHeight;
 }
 
-/// Whether labels stand above their panels: also where one is too long to stand beside its axis.
+/// Returns whether labels stand above their panels: also where one is too long to stand beside its
+/// axis.
 bool has_headings(const Chart& chart, std::size_t columns) {
   if (columns > 1 || !chart.panels.front().cell.empty() || has_strips(chart)) return true;
   return chart.aspect == 0.0 && std::ranges::any_of(chart.panels, [&](const ChartPanel& panel) {

@@ -42,7 +42,7 @@ std::string duration_text(double seconds);
 /// A share as "94.6 %".
 std::string percent(double share);
 
-/// For instance "95 %" or "99.9 %".
+/// A level as text, for instance "95 %" or "99.9 %".
 std::string level_text(double level);
 
 }  // namespace montecarta::analysis

@@ -56,7 +56,7 @@ TableLayout natural_layout(const TextTable& table) {
   return layout;
 }
 
-/// With headings, spaces and texts as narrow as it takes to fit into `width`, if they can be.
+/// Narrows headings, spaces and texts until the table fits into `width`, if that is possible.
 TableLayout layout_of(const TextTable& table, std::size_t width) {
   TableLayout layout = natural_layout(table);
   if (layout.total() <= width) return layout;

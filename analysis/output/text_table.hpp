@@ -87,7 +87,7 @@ struct Section {
     }
     return found;
   }
-  /// Whether there is anything except notes on missing data.
+  /// Returns whether there is anything except notes on missing data.
   bool has_content() const;
 
   /// Adds a table; nothing if it has no rows.
@@ -102,14 +102,14 @@ struct Section {
 /// the caller sets it, the summary.
 Section section_of(std::string_view name, const Values& values = {});
 
-/// Where a section stands, with the figures of its subject.
+/// The place of a section, with the figures of its subject.
 struct Place {
   std::string section;
   std::vector<std::string> figures = {};
   Section::Shown shown = Section::Shown::folded;  ///< on the page
 };
 
-/// From the first section to the last, on the page and on a terminal. Sections without a place come
+/// The order of the sections on the page and on a terminal. Sections without a place come
 /// behind them.
 const std::vector<Place>& reading_order();
 

@@ -10,7 +10,7 @@
 namespace montecarta::analysis {
 namespace {
 
-/// Nothing is written of what is empty: a page has many panels.
+/// Empty values are left out, since a page has many panels.
 template <class Values>
 void add_if_any(const char* name, const Values& values, Json& json) {
   if (values.empty()) return;

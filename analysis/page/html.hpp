@@ -15,13 +15,13 @@ namespace montecarta::analysis {
 /// Members stand in the order in which they are added.
 using Json = nlohmann::ordered_json;
 
-/// A number rounded to `digits` significant ones: nobody sees more in a drawing. NaN becomes null,
-/// and what is infinite the text "+inf" or "-inf", since JSON has neither.
+/// A number rounded to `digits` significant digits, since a drawing shows no more. NaN becomes
+/// null, and an infinite number the text "+inf" or "-inf", since JSON has neither.
 Json rounded(double value, int digits = 5);
 /// An array of such numbers.
 Json rounded(const std::vector<double>& values, int digits = 5);
 
-/// Compact text that may stand in a page's <script>; what is no UTF-8 is replaced.
+/// Compact text that may stand in a page's <script>; bytes that are not UTF-8 are replaced.
 std::string script_text(const Json& json);
 
 /// A chart as the page's script reads it (page/script/chart.js).

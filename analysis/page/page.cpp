@@ -49,7 +49,7 @@ std::string links_to_numbers(const Figure& figure) {
          "</details>";
 }
 
-/// Where a figure and its numbers can be had.
+/// The links to a figure and its numbers.
 std::string links_of(const Figure& figure) {
   const std::string files = "figures/" + figure.name;
   return "<a href=\"" + files + ".pdf\">PDF</a> &middot; <a href=\"" + files + ".svg\">SVG</a>" +
@@ -66,8 +66,8 @@ std::string html_drawing(const Figure& figure, const fs::path& directory) {
          links_of(figure) + "</figcaption>\n</figure>\n";
 }
 
-/// Each figure with a heading, and a sentence whose "?" opens the others; without what the heading
-/// of the section has said.
+/// Each figure with a heading that does not repeat that of the section, and a sentence with a "?"
+/// that opens the others.
 std::string html_figures(const Section& section, const fs::path& directory) {
   const int level = section.title.empty() ? 2 : 3;
   std::string html;
@@ -183,7 +183,7 @@ std::string details(const std::string& summary, const std::string& content) {
   return "<details><summary>" + summary + "</summary>" + content + "</details>\n";
 }
 
-/// How many of its rows are better, and how many worse.
+/// The numbers of its rows that are better and worse.
 std::string comparison_summary(const Comparisons& all) {
   std::size_t better = 0, worse = 0;
   for (const CellComparison& row : all.rows) {

@@ -15,18 +15,18 @@ namespace montecarta::analysis {
 
 // The parts of a report that belong to no metric.
 
-/// What was studied, for someone who knows nothing of it.
+/// The subject of the study, for someone who knows nothing of it.
 std::string studied_sentence(const StudyAnalysis& study);
 /// The page's heading: which study, how much of it.
 Section title_section(const StudyAnalysis& study);
 /// The verdict on each cell in short, with three numbers and the NEES over time; empty without
 /// truth.
 Section verdict_cards(const StudyAnalysis& study);
-/// Which runs failed, and why.
+/// The failed runs, with reasons.
 Section failure_section(const StudyAnalysis& study);
-/// Every cell beside the first one, and what each is worth; where two cells have truth.
+/// Compares every cell with the first one, if two cells have truth.
 Section comparison_section(const StudyAnalysis& study, const StudyComparison& comparison);
-/// The notes of sections that have nothing else: what is not there, and what to record for it.
+/// The notes of sections that have nothing else: the missing data, and the columns to record.
 Section missing_section(const std::vector<Section>& sections);
 /// Study, scenario and provenance.
 Section origin_section(const ResultFile& file, const StudyAnalysis& study);

@@ -98,7 +98,7 @@ struct Sparkline {
     return "";
   }
 
-  /// With the first and the last time where they are not those of the drive.
+  /// Adds the first and the last time if they are not those of the drive.
   std::string bars_of(const FamilyTest& test) const {
     constexpr double kLeastWidth = 2.0;
     const bool is_scan = test.family == Family::scan;

@@ -17,7 +17,7 @@ void write_row(const h5::Handle& group, const Frame::Row& row) {
   }
 }
 
-/// With the scale of its rows, if they have one.
+/// Adds the scale of its rows, if they have one.
 void write_columns(const h5::Handle& group, const std::vector<Frame::Column>& columns,
                    const h5::Handle* scale) {
   for (const Frame::Column& column : columns) {

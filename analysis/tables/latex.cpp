@@ -8,7 +8,7 @@
 namespace montecarta::analysis {
 namespace {
 
-/// As LaTeX prints a character.
+/// The LaTeX code that prints a character.
 std::string latex_escaped(char c) {
   static const std::map<char, std::string> kWords = {{'\\', "\\textbackslash{}"},
                                                      {'~', "\\textasciitilde{}"},

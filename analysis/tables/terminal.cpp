@@ -60,7 +60,7 @@ void print_section_tables(std::ostream& out, const Section& section, std::size_t
   }
 }
 
-/// What was studied, which runs failed, and the verdict on each cell in a sentence.
+/// Prints the subject of the study, the failed runs, and the verdict on each cell in a sentence.
 void print_head(std::ostream& out, const StudyAnalysis& study, std::size_t width) {
   const std::string runs =
       std::to_string(study.runs_here) +
@@ -74,7 +74,7 @@ void print_head(std::ostream& out, const StudyAnalysis& study, std::size_t width
   print_sentences(out, study, width);
 }
 
-/// What a reader must know even if they look at the summary only.
+/// Prints the warnings for a reader who only looks at the summary.
 void print_cautions(std::ostream& out, const StudyAnalysis& study, std::size_t width) {
   std::vector<std::string> sentences = imported_notes(study);
   std::ranges::copy(cautions(study.cells, study.imported), std::back_inserter(sentences));

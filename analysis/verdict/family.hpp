@@ -27,8 +27,8 @@ inline constexpr std::array kFamilies = {
     Family::size, Family::component,   Family::stretch,     Family::scan,
     Family::bias, Family::correlation, Family::between_runs};
 
-/// Whether members of a family are ratios of squared errors to the expected ones; else they are
-/// numbers that are zero if the filter is consistent.
+/// Returns whether members of a family are ratios of squared errors to the expected ones; else they
+/// are numbers that are zero if the filter is consistent.
 constexpr bool is_ratio(Family family) {
   return family == Family::size || family == Family::component || family == Family::stretch ||
          family == Family::scan;
@@ -62,7 +62,7 @@ struct FamilyTest {
 
   /// The member of the least p-value.
   const Member& strongest() const;
-  /// Whether `member` is shown to differ from its expectation.
+  /// Returns whether `member` is shown to differ from its expectation.
   bool is_shown(const Member& member) const { return is_rejected && member.p <= member_limit; }
 };
 

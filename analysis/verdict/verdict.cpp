@@ -25,8 +25,8 @@ Interval margin_of(Family family, double within) {
   return {-most, most};
 }
 
-/// Whether a member allows the answer "consistent": shown to be within the margin, or, of scans and
-/// the spread between runs, not shown to be beyond it.
+/// Returns whether a member allows the answer "consistent": shown to be within the margin, or, of
+/// scans and the spread between runs, not shown to be beyond it.
 bool allows_consistency(Family family, const Member& member, double within) {
   const Interval margin = margin_of(family, within);
   if (family == Family::scan || family == Family::between_runs) {

@@ -235,8 +235,8 @@ void WholeError::add_means(const WhitenedRun& run) {
   }
 }
 
-/// Whether at most a tenth of the samples have a singular covariance. Otherwise the size is judged
-/// by the NEES as well, which those samples have too.
+/// Returns whether at most a tenth of the samples have a singular covariance. Otherwise the size is
+/// judged by the NEES as well, which those samples have too.
 bool WholeError::are_most_samples_whole() const {
   double judged = 0.0;
   for (const SummedError::Scan& scan : nees_.scans()) judged += scan.runs;

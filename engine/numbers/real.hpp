@@ -132,7 +132,7 @@ inline double shorter_way(double angle) {
       angle);
 }
 
-/// Like wrap(double): in (-pi, pi], and exact if the angle is in range already.
+/// wrap(double) for lanes: the result is in (-pi, pi], and exact if the angle is in range already.
 inline Lanes wrap(const Lanes& angle) {
   return by_register(
       [](const auto& x) {

@@ -8,8 +8,8 @@
 
 namespace montecarta::engine {
 
-/// How parents are drawn (EQUATIONS 18). All are unbiased: particle j has N w_j children on
-/// average.
+/// The method by which parents are drawn (EQUATIONS 18). All methods are unbiased: particle j has N
+/// w_j children on average.
 enum class Resampling { systematic, stratified, residual, multinomial };
 
 /// Draws the parent of every new particle: parents[i] in [0, weights.size()), non-decreasing except

@@ -97,7 +97,7 @@ struct ColumnKind {
 /// All of them, in the order of the file. The own columns of a filter follow.
 std::span<const ColumnKind> column_table();
 
-/// Whether a study with `selection` stores the columns of this group.
+/// Returns whether a study with `selection` stores the columns of this group.
 bool is_selected(std::string_view group, const ColumnSelection& selection);
 
 /// Adds everything that a replay shows to `selection`: covariance, ancestry, particles, map.

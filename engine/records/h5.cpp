@@ -62,8 +62,8 @@ herr_t collect_name(hid_t, const char* name, const H5L_info_t*, void* names) {
   return 0;
 }
 
-/// Whether the file is open for reading only. Then an error is due to the user's file, otherwise to
-/// the machine.
+/// Returns whether the file is open for reading only. Then an error is due to the user's file,
+/// otherwise to the machine.
 bool is_only_read(const Handle& object) {
   const Handle file(H5Iget_file_id(object.id()));
   unsigned intent = 0;

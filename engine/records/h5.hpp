@@ -53,7 +53,7 @@ void close_file(Handle file);
 Handle create_group(const Handle& parent, const std::string& name);
 Handle open_group(const Handle& parent, const std::string& name);
 bool has(const Handle& parent, const std::string& name);
-/// Whether a member is a group, not a dataset.
+/// Returns whether a member is a group, not a dataset.
 bool is_group(const Handle& parent, const std::string& name);
 /// Names of the members of a group, in the order in which they were made.
 std::vector<std::string> members(const Handle& group);

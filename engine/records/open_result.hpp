@@ -13,8 +13,8 @@
 
 namespace montecarta::engine {
 
-/// Whether one process at a time works on a result, as OUT.h5.part, or several attempts may, each
-/// in a file with its own name.
+/// The number of processes that work on a result at a time: one, on OUT.h5.part, or several
+/// attempts, each on a file with its own name.
 enum class Claim : std::uint8_t { sole, attempt };
 
 /// An open, locked result file and its state.
@@ -31,8 +31,8 @@ struct OpenResult {
 /// Throws RunError if less than `bytes` are free beside `path`.
 void expect_room(const std::filesystem::path& path, double bytes);
 
-/// Lays out an empty result at the temporary name `path` and returns it locked. `fill` writes what
-/// the seal is to cover. Leaves no file if that fails.
+/// Lays out an empty result at the temporary name `path` and returns it locked. `fill` writes the
+/// part that the seal covers. Leaves no file if that fails.
 PosixFile lay_out_new(
     const std::filesystem::path& path, const ResultDescription& description,
     const std::function<void(const PosixFile&, const ResultSlabs&)>& fill = nullptr);

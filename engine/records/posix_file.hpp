@@ -58,8 +58,8 @@ std::string bytes_text(double bytes);
 /// Name of the unfinished work of the result `path`.
 std::filesystem::path part_of(std::filesystem::path path);
 
-/// Whether a file of that name exists. False if its folder cannot be searched; opening the file
-/// reports that.
+/// Returns whether a file of that name exists. False if its folder cannot be searched; opening the
+/// file reports that.
 bool is_there(const std::filesystem::path& path);
 
 /// Throws StudyError if a file of that name exists.

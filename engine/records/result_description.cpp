@@ -347,7 +347,7 @@ void check_references(const std::vector<ReferencePath>& references, const Check&
   }
 }
 
-/// Whether two references have the same name and the same kinds of data.
+/// Returns whether two references have the same name and the same kinds of data.
 bool are_alike(const ReferencePath& a, const ReferencePath& b) {
   return a.name == b.name && a.heading.empty() == b.heading.empty() &&
          a.covariance.empty() == b.covariance.empty();

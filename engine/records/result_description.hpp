@@ -27,7 +27,7 @@ struct StoredCell {
   TextPairs settings;
   std::vector<Column> columns;       ///< columns that every run has
   std::vector<Column> full_columns;  ///< further columns that only the first runs have
-  /// Whether every run has the column.
+  /// Returns whether every run has the column.
   bool has(std::string_view column) const;
   /// The column of that name, of every run or of the first runs; nullptr if it is not stored.
   const Column* find(std::string_view column) const;

@@ -45,7 +45,7 @@ class ResultFile {
   const std::vector<double>& scan_times() const;                    ///< [s]
   const std::vector<std::pair<double, double>>& landmarks() const;  ///< [m] true positions
   const std::vector<std::pair<double, double>>& waypoints() const;  ///< [m]
-  /// Whether errors are known, from true poses or from imported estimates.
+  /// Returns whether errors are known, from true poses or from imported estimates.
   bool has_errors() const;
   const std::vector<ReferencePath>& references() const;  ///< of a recorded drive; else empty
   bool has_truth() const;                                ///< whether true poses are stored
@@ -63,10 +63,11 @@ class ResultFile {
   /// Processor time of each run's own thread over its steps [s]; NaN if missing.
   std::vector<double> cpu_seconds(const StoredCell& cell) const;
   double wall_seconds() const;  ///< [s] of all sessions
-  /// XXH3 of what is stored of each run.
+  /// XXH3 of the stored data of each run.
   std::vector<std::uint64_t> fingerprints(const StoredCell& cell) const;
 
-  /// Whether the file has sums over groups of runs. Then the members above are of the first runs.
+  /// Returns whether the file has sums over groups of runs. Then the members above are of the first
+  /// runs.
   bool has_sums() const { return description().sums.has_value(); }
   std::vector<SumGroup> sum_groups(const StoredCell& cell) const;
   /// The sums of one of them. Any number of threads may call it.
@@ -74,7 +75,8 @@ class ResultFile {
   /// Processor time of every run in the sums [s].
   std::vector<double> cpu_seconds_in_sums(const StoredCell& cell) const;
 
-  /// Whether run index `i` has this column, because every run has it or this one is stored in full.
+  /// Returns whether run index `i` has this column, because every run has it or this one is stored
+  /// in full.
   bool holds(const StoredCell& cell, std::string_view column, std::size_t i) const;
   /// Reads the column of run index `i` (from 0 in this file), converted to double. `out` must have
   /// its size.
@@ -85,7 +87,7 @@ class ResultFile {
   /// Reads {time, 3} of run index i; zeros if no cell of that run is complete or failed yet.
   /// Requires has_truth().
   void read_truth(std::size_t i, std::span<double> out) const;
-  /// Whether every run has its own landmarks.
+  /// Returns whether every run has its own landmarks.
   bool has_own_landmarks() const;
   /// True positions [m] of the landmarks in run index i, by identity; empty if unknown.
   std::vector<Eigen::Vector2d> landmarks_of(std::size_t i) const;

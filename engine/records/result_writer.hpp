@@ -14,7 +14,7 @@
 
 namespace montecarta::engine {
 
-/// What happens to an existing file of the same name.
+/// The treatment of an existing file of the same name.
 enum class Existing { refuse, replace };
 
 /// Writes the result file of a plan. Unfinished work is in OUT.h5.part, which any HDF5 reader can

@@ -12,7 +12,7 @@ namespace {
 
 std::mutex reading_by_hdf5;  // the library may be built for one thread
 
-/// Where the rows lie; nullopt if they are not in one piece, or not all inside a file of
+/// Returns the place of the rows; nullopt if they are not in one piece, or not all inside a file of
 /// `file_bytes`.
 std::optional<Slab> rows_of(const h5::Handle& dataset, std::uint64_t file_bytes) {
   const std::optional<std::uint64_t> place = h5::place(dataset);

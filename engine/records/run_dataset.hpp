@@ -25,7 +25,7 @@ class RunDataset {
   void read(std::uint64_t i, std::span<Number> out) const;
 
  private:
-  /// Whether row `i` was read without HDF5.
+  /// Returns whether row `i` was read without HDF5.
   template <class Number>
   bool read_in_one_piece(std::uint64_t i, std::span<Number> out) const;
 

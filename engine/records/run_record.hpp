@@ -18,7 +18,7 @@
 
 namespace montecarta::engine {
 
-/// Which columns of a run are stored: those of every run, or also those that only the first
+/// The stored columns of a run: those of every run, or also those that only the first
 /// ColumnSelection::full_runs have.
 enum class Detail : std::uint8_t { usual, full };
 
@@ -39,7 +39,7 @@ class RecordLayout {
   std::size_t bytes() const { return bytes_; }
   /// Index of the column of that name; nullopt if it is not stored.
   std::optional<std::size_t> find(std::string_view name) const;
-  /// Whether the rows of `time` are scans instead of steps (record.rate = scan).
+  /// Returns whether the rows of `time` are scans instead of steps (record.rate = scan).
   bool scans_only() const { return scans_only_; }
   std::size_t scans() const { return scans_; }
   std::size_t particles() const { return particles_; }
@@ -73,7 +73,7 @@ std::vector<RecordLayout> layouts_of(const StudyPlan& plan, Detail detail);
 /// made, because the runs before it were enough.
 enum class RunStatus : std::uint8_t { missing = 0, complete = 1, failed = 2, spared = 3 };
 
-/// Whether a run with that status has a stored record.
+/// Returns whether a run with that status has a stored record.
 inline bool is_stored(RunStatus status) {
   return status == RunStatus::complete || status == RunStatus::failed;
 }

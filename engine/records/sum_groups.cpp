@@ -196,7 +196,7 @@ void expect_equal_groups(const SumShard& a, std::size_t g, const SumShard& b, st
   }
 }
 
-/// Where the sums over a group are.
+/// The place of the sums over a group.
 struct Source {
   const SumShard* shard = nullptr;
   std::size_t group = 0;

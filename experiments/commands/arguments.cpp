@@ -65,7 +65,7 @@ CommandSpec command_in(const std::string& usage) {
   return command;
 }
 
-/// Whether the usage of a command has an option, which must then be given.
+/// Returns whether the usage of a command has an option, which must then be given.
 bool is_in_usage(const OptionSpec& option, const CommandSpec& command) {
   const std::vector<std::string> words = split(command.usage, ' ');
   return std::ranges::find(words, "--" + option.name) != words.end() ||

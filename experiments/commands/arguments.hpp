@@ -34,7 +34,7 @@ struct OperandSpec {
   std::size_t most = 1;
 };
 
-/// How a command is called. Both the parser and the help text are made from it.
+/// The usage of a command. Both the parser and the help text are made from it.
 struct CommandSpec {
   std::string name;
   std::string usage;                  ///< with operands and required options
@@ -82,8 +82,8 @@ std::string help_text(const CommandSpec& spec);
 /// `word`, quoted so that a POSIX shell reads it back as one word.
 std::string shell_quoted(const std::string& word);
 
-/// Whether --allow-external was given. Throws StudyError if it was not and a cell of the study is
-/// an external program.
+/// Returns `allowed` if --allow-external was given. Throws StudyError if it was not and a cell of
+/// the study is an external program.
 ExternalPrograms programs_of(const Study& study, const Arguments& arguments);
 /// Reads the study that the first operand names, a file or a shipped study, and applies --set.
 Study study_of(const Arguments& arguments);

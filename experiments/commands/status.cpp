@@ -54,7 +54,7 @@ class StudyStatus {
   }
 
  private:
-  /// Which runs of a group failed does not matter here.
+  /// It does not matter here which runs of a group failed.
   static void add_groups(const std::vector<SumGroup>& groups, std::vector<RunStatus>& status) {
     for (const SumGroup& group : groups) {
       const auto first = status.begin() + static_cast<std::ptrdiff_t>(group.first_run);
@@ -69,7 +69,7 @@ class StudyStatus {
   std::vector<std::vector<RunStatus>> status_;
 };
 
-/// How thoroughly a file is checked.
+/// The depth of the check of a file.
 enum class Depth { statuses, every_byte };
 
 /// A sentence such as "run 7 is damaged" about the first stored run that does not match its

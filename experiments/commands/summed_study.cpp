@@ -62,8 +62,8 @@ bool is_of_runs(const ResultDescription& stored, const StudyPlan& plan) {
          stored.sums->last_run == plan.last_run;
 }
 
-/// Whether the file is the finished group of this plan; a damaged one is computed again. Throws
-/// StudyError if it is of another study.
+/// Returns whether the file is the finished group of this plan; a damaged one is computed again.
+/// Throws StudyError if it is of another study.
 bool is_finished(const fs::path& path, const StudyPlan& group, const TextPairs& provenance) {
   if (!is_there(path)) return false;
   ResultDescription stored;

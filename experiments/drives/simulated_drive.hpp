@@ -21,13 +21,13 @@
 
 namespace montecarta::experiments {
 
-/// Where the noise of the controls acts (EQUATIONS 1).
+/// The place in which the noise of the controls acts (EQUATIONS 1).
 enum class NoiseMode {
   measured_control,  ///< the truth follows the nominal control; the filter is given a noisy one
   matched,           ///< the truth follows a noisy control; the filter is given the nominal one
 };
 
-/// How a simulated vehicle steers if noise acts on the truth (EQUATIONS 1).
+/// The steering of a simulated vehicle if noise acts on the truth (EQUATIONS 1).
 enum class Pilot {
   closed_loop,  ///< by its true pose, so that controls depend on the truth
   open_loop     ///< by the controls of the noise-free drive
@@ -39,7 +39,7 @@ enum class MapPlacement {
   random  ///< displaced in every run, uniformly within Scenario::map_shift
 };
 
-/// How a simulated vehicle drives through a world, and its sensor (study file: [scenario]).
+/// The drive of a simulated vehicle through a world, and its sensor (study file: [scenario]).
 struct Scenario {
   NoiseMode noise = NoiseMode::measured_control;
   Pilot pilot = Pilot::closed_loop;

@@ -16,7 +16,7 @@
 
 namespace montecarta::experiments {
 
-/// How a cell runs its external program.
+/// The settings by which a cell runs its external program.
 struct ExternalCommand {
   std::vector<std::string> words;  ///< the program and its arguments
   double answer_limit = 30.0;      ///< [s] time limit of one answer
@@ -77,8 +77,8 @@ class ExternalFilter final : public SlamFilter {
   std::unique_ptr<Session> session_;
 };
 
-/// Whether a cell may start the program that it names. The user decides this when running a study;
-/// a study file cannot.
+/// The permission of a cell to start the program that it names. The user decides this when running
+/// a study; a study file cannot.
 enum class ExternalPrograms { refused, allowed };
 
 /// Name of the option that allows it, without dashes.
@@ -88,7 +88,7 @@ inline constexpr const char* kAllowExternal = "allow-external";
 /// label=mine".
 FilterKind external_kind();
 
-/// Whether cells of this kind start a program.
+/// Returns whether cells of this kind start a program.
 bool starts_program(const FilterKind& filter);
 
 /// All filters that a study may name: those of the filter table, then `external`.

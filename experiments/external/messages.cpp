@@ -110,13 +110,14 @@ constexpr double kEigenvalueRounding = 1e-9;
 
 [[noreturn]] void refuse_answer(const std::string& reason) { throw ProgramError(reason); }
 
-/// Whether the line has NaN or Infinity, which Python and others write although JSON has neither.
+/// Returns whether the line has NaN or Infinity, which Python and others write although JSON has
+/// neither.
 bool names_no_number(std::string_view line) {
   return line.find("NaN") != line.npos || line.find("Infinity") != line.npos;
 }
 
-/// Whether brackets are nested deeper than in any valid answer. A parser needs memory for each
-/// level.
+/// Returns whether brackets are nested deeper than in any valid answer. A parser needs memory for
+/// each level.
 bool is_too_deep(std::string_view line) {
   int depth = 0;
   for (const char c : line) {

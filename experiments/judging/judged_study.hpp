@@ -14,7 +14,7 @@
 
 namespace montecarta::experiments {
 
-/// How the estimates of another program are made into a result file.
+/// The settings by which the estimates of another program become a result file.
 struct JudgingOptions {
   std::filesystem::path output;
   /// nullopt if the user gave none, which is allowed for a state that has only one.

@@ -89,7 +89,7 @@ StateRows read_truth(const std::filesystem::path& path, const StateShape& shape)
 /// sum of squares or `dof` is not a count.
 std::uint32_t checked_dof(double nis, double dof, const std::string& place);
 
-/// How the truth at the time of an estimate is found.
+/// The method that finds the truth at the time of an estimate.
 struct TimeMatch {
   double tolerance = 1e-6;   ///< [s] within which two times are the same
   bool interpolate = false;  ///< between two rows: linearly, with angles the shorter way round

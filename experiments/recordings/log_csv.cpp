@@ -51,7 +51,7 @@ Headers detection_headers(std::span<const Quantity> components) {
   return {header, header + ",identity"};
 }
 
-/// Whether reference `a` is read before `b`.
+/// Returns whether reference `a` is read before `b`.
 bool is_read_before(const std::string& a, const std::string& b) {
   return a != b && (a == kLeadingReference || (b != kLeadingReference && a < b));
 }
@@ -112,7 +112,7 @@ Detection detection_in(const CsvRows& rows, std::span<const Quantity> components
   return detection;
 }
 
-/// Whether all fields behind the time are empty.
+/// Returns whether all fields behind the time are empty.
 bool is_empty_scan(const CsvRows& rows, std::size_t fields) {
   for (std::size_t i = 1; i <= fields; ++i) {
     if (!rows.field(i).empty()) return false;

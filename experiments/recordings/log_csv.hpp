@@ -26,7 +26,7 @@ DriveLog read_log_csv(const std::filesystem::path& folder);
 /// read, and RunError if writing fails.
 void write_log_csv(const DriveLog& log, const std::filesystem::path& folder);
 
-/// Like above, but writes references and landmarks, which an estimator must not see, to a separate
+/// The same, but it writes references and landmarks, which an estimator must not see, to a separate
 /// folder. It must be new or empty too.
 void write_log_csv(const DriveLog& log, const std::filesystem::path& folder,
                    const std::filesystem::path& truth_folder);

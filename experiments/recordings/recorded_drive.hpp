@@ -72,7 +72,7 @@ class SeveralDrives final : public DriveSource {
   Itinerary itinerary_;  ///< of the drive with the most scans, without references
 };
 
-/// Whether a log contains the identities of detections.
+/// The presence of the identities of detections in a log.
 enum class Identities { told, withheld };
 
 /// Converts a drive with known truth to a log. RecordedDrive makes the same steps, controls and

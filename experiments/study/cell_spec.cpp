@@ -231,8 +231,8 @@ void refuse_sensors(const Settings& settings, std::span<const CellSpec> cells) {
 
 namespace {
 
-/// Whether a cell may differ from others of its filter in its label only, because an option is a
-/// text.
+/// Returns whether a cell may differ from others of its filter in its label only, because an option
+/// is a text.
 bool is_known_by_label(const CellSpec& cell) {
   return std::ranges::any_of(cell.filter->options, [](const Parameter& option) {
     return option.kind == Parameter::Kind::text;
@@ -248,8 +248,8 @@ std::string label_part(std::string text) {
   return text;
 }
 
-/// Whether cells of the same filter differ in option number `i`. Options that are texts do not
-/// count, because they are no part of labels.
+/// Returns whether cells of the same filter differ in option number `i`. Options that are texts do
+/// not count, because they are no part of labels.
 bool distinguishes(const std::vector<CellSpec>& cells, const CellSpec& cell, std::size_t i) {
   if (cell.filter->options[i].kind == Parameter::Kind::text) return false;
   return std::ranges::any_of(cells, [&](const CellSpec& other) {

@@ -268,7 +268,7 @@ const Settings::Value& Settings::at(std::string_view section, std::string_view k
   return found->second;
 }
 
-/// Whether a setting applies, given the setting that chooses, which is filled in earlier.
+/// Returns whether a setting applies, given the setting that chooses, which is filled in earlier.
 bool Settings::is_for_choice(const Setting& setting) const {
   return setting.chooser.empty() || setting.is_for_choice(text(setting.section, setting.chooser));
 }

@@ -78,7 +78,7 @@ class Settings {
   Settings(std::span<const IniEntry> entries, const std::string& name);
 
   const std::string& text(std::string_view section, std::string_view key) const;
-  /// Whether a list holds `item`.
+  /// Returns whether a list holds `item`.
   bool lists(std::string_view section, std::string_view key, std::string_view item) const;
   double number(std::string_view section, std::string_view key) const;
   std::uint64_t count(std::string_view section, std::string_view key) const;
@@ -91,7 +91,8 @@ class Settings {
   /// The value of scenario.kind.
   std::string scenario_kind() const;
 
-  /// Whether the setting applies to the kind of scenario, vehicle and sensor, and so has a value.
+  /// Returns whether the setting applies to the kind of scenario, vehicle and sensor, and so has a
+  /// value.
   bool has(std::string_view section, std::string_view key) const;
   /// (key, value) of the settings of a section that have a value, in the order of the table.
   std::vector<std::pair<std::string, std::string>> section(std::string_view name) const;

@@ -30,8 +30,8 @@ const Score* score_called(const std::string& name, const std::string& place) {
                       place + ": until = " + name + " < ... (runs have no number of that name)");
 }
 
-/// Whether the verdict of a cell is known after `runs` runs. "Consistent" needs `least_runs`,
-/// because an early stop would miss rare divergence.
+/// Returns whether the verdict of a cell is known after `runs` runs. "Consistent" needs
+/// `least_runs`, because an early stop would miss rare divergence.
 bool is_verdict_known(const ResultFile& file, std::size_t cell, std::uint64_t runs,
                       std::uint64_t least_runs, const Parallel& parallel) {
   const CellAnalysis found =
@@ -130,8 +130,8 @@ std::string lines_of(const std::string& kind, const std::vector<Eigen::Vector2d>
   return text;
 }
 
-/// Whether the study contains its world: [world] with `waypoint = x, y` and `landmark = x, y` lines
-/// [m].
+/// Returns whether the study contains its world: [world] with `waypoint = x, y` and `landmark = x,
+/// y` lines [m].
 bool has_inline_world(const IniText& ini) {
   return std::ranges::any_of(ini.entries,
                              [](const IniEntry& entry) { return entry.section == "world"; });
@@ -257,8 +257,8 @@ Study read_study(const std::filesystem::path& path, std::span<const std::string>
   return parse_study(text_file(path), path.string(), path.parent_path(), overrides);
 }
 
-/// Whether a setting has no effect and is left out of the resolved text, so that the fingerprints
-/// of studies without it do not change.
+/// Returns whether a setting has no effect and is left out of the resolved text, so that the
+/// fingerprints of studies without it do not change.
 bool is_silent(const std::string& key, const std::string& value) {
   return (key == "until" && value.empty()) || (key == "full_runs" && value == "0");
 }

@@ -11,7 +11,8 @@
 
 namespace montecarta::filters {
 
-// Who makes FastSLAM I or a filter whose sensor does not fix landmarks includes their headers.
+// A file that makes FastSLAM I, or a filter for a sensor that does not fix landmarks, includes
+// their headers.
 template <class Real, KeepsLandmarks<Real> MapTransform>
 class MotionSampling;
 template <class Real>

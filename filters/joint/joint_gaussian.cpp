@@ -374,8 +374,8 @@ bool JointGaussian::carry_error(const Eigen::Vector2d& pose_step) {
   return true;
 }
 
-/// With D the derivative of the points by the pose and C their covariance with it, P <- P - D C' -
-/// C D' + D P_x D' = P - D G' - G D' with G = C - D P_x / 2.
+/// Let D be the derivative of the points by the pose and C their covariance with it. P <- P - D C'
+/// - C D' + D P_x D' = P - D G' - G D' with G = C - D P_x / 2.
 void JointGaussian::centre_on_pose() {
   auto D = moved_.topRows(rows()), G = halved_.topRows(rows());
   D.setZero();

@@ -85,7 +85,7 @@ bool stands_still(const MotionIncrement& motion) {
 
 class AtEstimate final : public Linearisation {
  public:
-  /// Without the derivatives, since it is called at every control step.
+  /// It omits the derivatives, since it is called at every control step.
   PoseMoments pose_after(const LinearisedSystem& system,
                          const MotionIncrement& motion) const override {
     return system.gaussian.pose_after(motion);

@@ -48,7 +48,7 @@ struct LinearisedSystem {
   LinearisationPoints points;
 };
 
-/// How a joint filter linearises motion and observations (EQUATIONS 15).
+/// The linearisation of motion and observations in a joint filter (EQUATIONS 15).
 class Linearisation {
  public:
   virtual ~Linearisation() = default;
@@ -78,16 +78,17 @@ class Linearisation {
   virtual void put_in_map(JointEstimate& /*joint*/) const {}
 };
 
-/// At the latest estimate: EKF-SLAM, and RI-EKF-SLAM with its error.
+/// Linearises at the latest estimate: EKF-SLAM, and RI-EKF-SLAM with its error.
 std::unique_ptr<Linearisation> at_estimate();
-/// At the first estimates (Huang, Mourikis, Roumeliotis, ICRA 2008).
+/// Linearises at the first estimates (Huang, Mourikis, Roumeliotis, ICRA 2008).
 std::unique_ptr<Linearisation> at_first_estimates();
-/// At the first estimates, shifted together to the latest ones before each motion (Huang, Mourikis,
-/// Roumeliotis, IJRR 2010).
+/// Linearises at the first estimates, shifted together to the latest ones before each motion
+/// (Huang, Mourikis, Roumeliotis, IJRR 2010).
 std::unique_ptr<Linearisation> at_constrained_estimates();
-/// At the latest estimate, with errors relative to the vehicle (Castellanos et al., RAS 2007).
+/// Linearises at the latest estimate, with errors relative to the vehicle (Castellanos et al., RAS
+/// 2007).
 std::unique_ptr<Linearisation> relative_to_vehicle();
-/// Regression on sigma points, as in the unscented Kalman filter.
+/// Linearises by regression on sigma points, as in the unscented Kalman filter.
 std::unique_ptr<Linearisation> by_sigma_points();
 
 }  // namespace montecarta::filters

@@ -10,7 +10,7 @@
 
 namespace montecarta::filters {
 
-/// How a Kalman step moves the estimate, which defines the error that has the covariance.
+/// The move of the estimate by a Kalman step, which defines the error that has the covariance.
 enum class Retraction {
   additive,  ///< EKF-SLAM: truth = estimate + error
   invariant  ///< RI-EKF-SLAM: truth = exp(error) estimate, which moves pose and map together

@@ -60,7 +60,7 @@ struct VehicleNumber {
 // A body that moves with constant velocity in its own frame and turns at a constant yaw rate: the
 // motion of all vehicles with a controlled yaw rate (EQUATIONS 1).
 
-/// How such a motion is integrated over a step.
+/// The integration of such a motion over a step.
 enum class Integration {
   arc,   ///< exactly: the velocity turns with the body
   euler  ///< the velocity keeps the direction from the beginning of the step

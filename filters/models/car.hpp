@@ -15,7 +15,7 @@ namespace montecarta::models {
 inline constexpr double kLeastWheelShare = 0.1;
 
 /// A car that is steered at the front wheels. Its control is (speed [m/s], steering angle [rad]); a
-/// step is linear in the speed and turning_angles with the steering angle. `Kind` defines the
+/// step is linear in the speed and nonlinear in the steering angle. `Kind` defines the
 /// reference point of the pose and of the speed.
 struct Car {
   enum class Kind {

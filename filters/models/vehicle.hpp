@@ -19,10 +19,9 @@ namespace montecarta::models {
 /// own and list it here. The members of a vehicle with n controls are
 /// - kNames, name(), named(): its names in study files; kControls: its n controls; numbers(): its
 ///   other settings; `integration`: only if the user may choose it;
-/// - travel(): its displacement at a given turning_angle, linear in the first n - 1 controls. The
-/// turning_angle is an
-///   angle: the last control times angle_scale(). If kTurnsByAngle, the vehicle turns by that angle
-///   and the turn of travel() is 0;
+/// - travel(): its displacement at a given TurningAngle, linear in the first n - 1 controls. The
+///   angle is the last control times angle_scale(). If kTurnsByAngle, the vehicle turns by that
+///   angle and the turn of travel() is 0;
 /// - travel_by_angle(): the derivative of travel(); control_of(): the control of a step;
 /// - steered(), way_to_turn(), kTurnLimit: how a pilot turns it to a way-point.
 using Vehicle = std::variant<Car, DifferentialDrive, Omnidirectional>;
@@ -74,7 +73,7 @@ BodyStep<Real> body_step_at(const V& vehicle, const ControlOf<Real>& control,
   if constexpr (V::kTurnsByAngle) step.turn = turning_angle.angle;
   return step;
 }
-/// The same with the turning_angle computed from the control.
+/// The same with the turning angle computed from the control.
 template <class V, class Real>
 BodyStep<Real> body_step_of(const V& vehicle, const ControlOf<Real>& control, double duration) {
   const Real angle = control[kLinearOf<V>] * Real(vehicle.angle_scale(duration));

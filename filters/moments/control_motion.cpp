@@ -31,8 +31,7 @@ PointPair heading_pair(const Column3<double>& step, const Column3<double>& colum
           {turning_angle * step.x, turning_angle * step.y, 0.0}};
 }
 
-/// Points that differ in the angle of the turning_angle; their images are combined before they are
-/// rotated.
+/// Points that differ in the turning angle; their images are combined before they are rotated.
 PointPair bend_pair(const Column3<double>& centre, const Column3<double>& leftward,
                     const Column3<double>& rightward, const Direction<double>& course) {
   return {turned(0.5 * (leftward - rightward), course),
@@ -46,7 +45,7 @@ Column3<double> heading_column(const Symmetric3<double>& P) {
   return {P.xh * inverse, P.yh * inverse, root};
 }
 
-/// The turning_angle at the sum of two angles.
+/// The turning angle that is the sum of two.
 TurningAngle<double> at_sum(const TurningAngle<double>& a, const TurningAngle<double>& b) {
   const auto& [c, s] = a.direction;
   const auto& [d, t] = b.direction;
@@ -129,7 +128,7 @@ void add_cross(Symmetric3<double>& P, double weight, const Column3<double>& a,
 }
 
 /// A summand of the displacement: a coefficient of known mean and variance times a column that
-/// depends only on the turning_angle.
+/// depends only on the turning angle.
 template <std::size_t N>
 struct BodyPart {
   double mean, variance;
@@ -169,7 +168,7 @@ BodyMoments moments_of(const std::array<BodyPart<N>, Parts>& parts, const Contro
 }
 
 /// Moments of the displacement of a vehicle of type V. It has one part for each control in which it
-/// is linear, per unit of that control, and one for the turn by the turning_angle, relative to that
+/// is linear, per unit of that control, and one for the turning angle itself, relative to that
 /// of the central node. `turning_angles` are those of the nodes.
 template <class V, std::size_t N>
 BodyMoments body_moments(const V& vehicle,

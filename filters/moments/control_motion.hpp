@@ -6,7 +6,7 @@
 
 namespace montecarta::filters {
 
-/// How the noise of a control is propagated to the pose (option `motion`).
+/// The method that propagates the noise of a control to the pose (option `motion`).
 enum class Motion {
   linearised,  ///< EQUATIONS 1
   quadrature,  ///< moved_by_quadrature()

@@ -87,7 +87,7 @@ class FastSlam : public SlamFilter {
  protected:
   virtual void predict_particle(const StepContext& context, std::uint32_t i, Particle& p,
                                 const Control& control, double duration) = 0;
-  /// Multiplies the weight of a particle by what the scan says of it, and draws its pose.
+  /// Multiplies the weight of a particle by the likelihood of the scan, and draws its pose.
   virtual void weigh_and_draw(const StepContext& context, std::uint32_t i, Particle& p,
                               Scan scan) = 0;
 

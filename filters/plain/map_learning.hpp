@@ -17,7 +17,7 @@ struct WeightedPoses {
   std::vector<double> weight;
 };
 
-/// How a landmark of the shared map learns from one detection that is made from all poses
+/// The update of a landmark of the shared map by one detection that is made from all poses
 /// (EQUATIONS 14; Havangi et al. 2013, (19) to (31)).
 class MapLearning {
  public:

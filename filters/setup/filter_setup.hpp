@@ -48,7 +48,7 @@ struct Belief {
 
 enum class Association { known, nearest };
 
-/// How detections are associated with landmarks (study file: [association]; EQUATIONS 17).
+/// The association of detections with landmarks (study file: [association]; EQUATIONS 17).
 struct AssociationSettings {
   Association kind = Association::known;
   double gate = 5.991464547107979;      ///< D^2 below which a detection may match

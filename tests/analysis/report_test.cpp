@@ -46,7 +46,7 @@ TEST(Report, HoldsEverySectionAndNeedsNothingElse) {
   EXPECT_THAT(summary, Not(HasSubstr("](figures/rmse.svg)")));
 }
 
-/// How often `part` is in `text`.
+/// The number of times that `part` is in `text`.
 std::size_t count_in(const std::string& text, const std::string& part) {
   std::size_t n = 0;
   for (std::size_t at = 0; (at = text.find(part, at)) != text.npos; at += part.size()) ++n;

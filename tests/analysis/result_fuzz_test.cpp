@@ -32,7 +32,7 @@ class ResultFuzz : public testing::Test {
     const ResultDescription description = read_description(h5::open_file(path_), path_);
     return written_later(find_slabs(path_, description));
   }
-  /// Whether a file of these bytes is refused. Tables take longer than all else.
+  /// Returns whether a file of these bytes is refused. Tables take longer than all else.
   bool is_refused(const std::string& bytes, bool with_tables = false) const {
     std::ofstream(path_, std::ios::binary) << bytes;
     try {
@@ -66,7 +66,7 @@ TEST_F(ResultFuzz, AnyBytes) {
   EXPECT_LT(refused, cases);
 }
 
-/// Where the seal does not look.
+/// The bytes that the seal does not cover.
 TEST_F(ResultFuzz, NumbersOfRuns) {
   const std::vector<ByteRange> ranges = open_ranges();
   for (std::uint64_t seed = 0; seed < damaged_files(60); ++seed) {

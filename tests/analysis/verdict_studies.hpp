@@ -14,7 +14,7 @@
 
 namespace montecarta::analysis {
 
-/// Whether a whole table of rates is asked for, instead of a sample of its lines.
+/// Returns whether a whole table of rates is asked for, instead of a sample of its lines.
 inline bool is_table_wanted() { return std::getenv("MONTECARTA_STUDIES") != nullptr; }
 
 inline constexpr const char* kHowToGetTheTable = "of the whole table: set MONTECARTA_STUDIES=2000";
@@ -38,7 +38,7 @@ inline double share_errors(double share, std::uint64_t studies, double deviation
   return deviations * std::sqrt(share * (1.0 - share) / static_cast<double>(studies));
 }
 
-/// How the errors of one run depend on each other.
+/// The dependence of the errors of one run on each other.
 enum class Memory {
   white,
   ar95,   ///< autoregression, 0.95 from scan to scan
@@ -163,7 +163,7 @@ inline Verdict verdict_of(const PlantedLaw& law, std::uint64_t study, std::uint6
   return verdict_of(sums, law.dimension, scans, runs, within);
 }
 
-/// Whether some family rejects, without regard to the margin.
+/// Returns whether some family rejects, without regard to the margin.
 inline bool is_rejected(const Verdict& verdict) {
   return std::ranges::any_of(verdict.families, &FamilyTest::is_rejected);
 }

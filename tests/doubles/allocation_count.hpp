@@ -10,7 +10,7 @@
 
 namespace montecarta::engine {
 
-/// How often this program has allocated; tests look at differences.
+/// The number of allocations of this program so far; tests look at differences.
 inline std::atomic<std::size_t> n_allocations{0};
 
 }  // namespace montecarta::engine

@@ -34,8 +34,8 @@ class Dice {
   std::uint64_t state_;
 };
 
-/// How many damaged files a test tries: `usual`, or as many times more as the environment variable
-/// MONTECARTA_FUZZ says.
+/// The number of damaged files that a test tries: `usual`, or as many times more as the environment
+/// variable MONTECARTA_FUZZ says.
 inline std::uint64_t damaged_files(std::uint64_t usual) {
   const char* const times = std::getenv("MONTECARTA_FUZZ");
   return times == nullptr ? usual : usual * std::strtoull(times, nullptr, 10);

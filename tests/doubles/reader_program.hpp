@@ -25,12 +25,12 @@ inline ProgramOutcome run_program(const std::string& command) {
   return outcome;
 }
 
-/// Whether the shell finds a program; tests of real readers skip visibly where not.
+/// Returns whether the shell finds a program; tests of real readers skip visibly where not.
 inline bool installed(const std::string& program) {
   return run_program("command -v " + program).status == 0;
 }
 
-/// Whether Debian's Python finds a module.
+/// Returns whether Debian's Python finds a module.
 inline bool python_has(const std::string& module) {
   return run_program("/usr/bin/python3 -c 'import " + module + "'").status == 0;
 }

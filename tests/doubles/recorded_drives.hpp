@@ -33,7 +33,7 @@ class RecordedDrives : public DriveSource {
     fixes[fixes.size() / 2].y() += kWildFix;
   }
 
-  /// Where the vehicle really is at `time` [s].
+  /// The true pose of the vehicle at `time` [s].
   Pose pose_at(double time) const {
     const double turn = kTwoPi * time / duration_;
     const double dx = 60.0 * std::cos(turn), dy = 80.0 * std::cos(2.0 * turn);

@@ -118,7 +118,7 @@ class Printed(unittest.TestCase):
                           "contradicted in 2 of 2 batches"])
         self.assertEqual(self.verdicts("claim = stays_above_from_pose b > a\n", batches[0]),
                          ["holds, over all runs"])
-        # Without a printed band: of 30 runs and 3 components, [2.19, 3.93] as well.
+        # If no band is printed, it is that of 30 runs and 3 components, [2.19, 3.93] as well.
         self.assertAlmostEqual(batches[0].by_band("a", "share_inside_pose", {}), 0.25)
         self.assertAlmostEqual(batches[0].by_band("a", "share_inside_pose", {"pose": (0, 9)}), 1.0)
 

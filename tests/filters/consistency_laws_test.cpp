@@ -102,8 +102,8 @@ PoseGaussian<double> gaussian_of(const Eigen::Vector3d& mean, const Eigen::Matri
 }
 
 TEST(FastSlam2Weights, InALinearCaseTheRatioIsTheClosedFormWhateverWasDrawn) {
-  // EQUATIONS (6.3): p(z | x) N(x; prior) / N(x; posterior) is p(z), for every x. Drawn and weighed
-  // by what the filters draw and weigh with; a tenth keeps headings within half a turn.
+  // EQUATIONS (6.3): p(z | x) N(x; prior) / N(x; posterior) is p(z), for every x. Poses are
+  // drawn and weighed by functions of the filters; a tenth keeps headings within half a turn.
   RngStream draw({.seed = 235, .purpose = Draw::test});
   for (int n = 0; n < 200; ++n) {
     const Eigen::Matrix3d P = 0.01 * random_covariance<3>(draw);

@@ -12,8 +12,8 @@
 
 namespace montecarta::filters {
 
-/// Whether the average NEES of a pose over `runs` runs is one that a consistent filter has, within
-/// five standard errors. Says in which direction it is off, and by how much.
+/// Returns whether the average NEES of a pose over `runs` runs is one that a consistent filter has,
+/// within five standard errors. Says in which direction it is off, and by how much.
 inline testing::AssertionResult is_consistent(double anees, std::uint64_t runs) {
   constexpr double kLevel = 1.0 - 5.7e-7;
   const analysis::Interval band = analysis::nees_bounds(runs, 3, kLevel);

@@ -52,7 +52,7 @@ struct SmallWorldSettings {
   std::size_t steps_per_scan = 8;
   double max_range = 30.0;  ///< [m] of the pose, in front only
   Belief noise = {};        ///< of the truth
-  /// From scan to scan in turn.
+  /// Alternates from scan to scan.
   std::vector<Control> controls = std::vector<Control>(1, Control{3.0, 0.15});
 };
 

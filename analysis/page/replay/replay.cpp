@@ -61,7 +61,7 @@ ReplayParticles read_particles(const StoredCell& cell, const RunRows& rows, cons
                         frames, most);
 }
 
-/// The NEES ratio of a complete run whose truth is known.
+/// The NEES ratio of a complete run with known truth.
 void read_nees(const RunRows& rows, const StoredCell& cell, std::span<const double> times,
                const Scans& frames, ReplayCell& replay) {
   if (!replay.failure.empty() || rows.truth.empty()) return;
@@ -99,7 +99,7 @@ ReplayCell read_cell(const ResultFile& file, std::size_t index, std::size_t run,
   return replay;
 }
 
-/// The share of one cell of what all have together.
+/// The share of one cell in the total of all cells.
 ReplaySize share_of(const ReplaySize& size, std::size_t cells, std::size_t frames) {
   ReplaySize share = size;
   share.particles =
@@ -131,7 +131,8 @@ void read_truth(const ResultFile& file, std::size_t run, const Scans& frames, Re
   replay.h = component(rows, 2, frames);
 }
 
-/// [m] What is within reach of the ellipses in nine of ten frames: 1, 2 or 5 times a power of ten.
+/// [m] The size that the ellipses do not exceed in nine of ten frames: 1, 2 or 5 times a power of
+/// ten.
 double close_up_of(const Replay& replay) {
   std::vector<double> reach;
   for (const ReplayCell& cell : replay.cells) {
@@ -194,7 +195,7 @@ bool looks_alike(const Ellipse& a, const Ellipse& b, double least) {
          std::abs(a.major - b.major) < least && std::abs(a.minor - b.minor) < least;
 }
 
-/// What has changed since `shown`, which is brought up to date. A landmark that is no longer in the
+/// The changes since `shown`, which is brought up to date. A landmark that is no longer in the
 /// map has an ellipse of NaN.
 std::vector<ReplayMap::Landmark> changes_at(const StoredMap& stored, std::size_t scan, double least,
                                             std::vector<std::optional<Ellipse>>& shown) {
@@ -308,7 +309,7 @@ namespace {
 
 bool has_particles(const ReplayCell& cell) { return !cell.particles.frames.empty(); }
 
-/// What the player shows of this file.
+/// The data of this file that the player shows.
 std::string shown(const Replay& replay) {
   const auto if_any = [&](const char* key, const auto& has) {
     return std::ranges::any_of(replay.cells, has) ? prose("replay", key) : "";
@@ -329,7 +330,7 @@ std::size_t held_index(const ResultFile& file, std::uint64_t run) {
   return static_cast<std::size_t>(std::ranges::find(file.runs(), run) - file.runs().begin());
 }
 
-/// Which run is shown, of how many, why this one, and whether more is stored of it than of others.
+/// Explains which run of how many is shown, why, and whether more is stored of it than of others.
 std::string which_run(const ResultFile& file, const Replay& replay) {
   const std::size_t index = held_index(file, replay.run);
   const std::uint64_t runs = runs_in(file);
@@ -351,7 +352,7 @@ std::string which_run(const ResultFile& file, const Replay& replay) {
          prose("replay", "full runs", {{"runs", std::to_string(file.description().full_runs)}});
 }
 
-/// What to record to see more; empty where all is there, and of imported estimates.
+/// The columns to record to see more; empty if all are there, and for imported estimates.
 std::string wanted(const ResultFile& file, std::size_t run) {
   if (file.cells().front().has("error")) return "";
   const auto lacks = [&](const char* column, bool of_particles) {

@@ -30,7 +30,7 @@ struct ReplayParticles {
   std::vector<Frame> frames;
 };
 
-/// What becomes of the map at a frame: the landmarks that are new or have changed.
+/// The changes of the map at a frame: the landmarks that are new or have changed.
 struct ReplayMap {
   struct Landmark {
     std::uint32_t row = 0;  ///< which one it is
@@ -43,7 +43,7 @@ struct ReplayMap {
 /// The probability that an ellipse of a replay holds.
 inline constexpr double kReplayShare = 0.95;
 
-/// What one cell thought at every frame. A failed run ends in NaN.
+/// The estimate of one cell at every frame. A failed run ends in NaN.
 struct ReplayCell {
   std::string label;
   std::size_t style = 0;                       ///< for line_colour()
@@ -68,7 +68,7 @@ struct Replay {
   double close_up = 1.0;  ///< [m] half the width of a picture about the vehicle
 };
 
-/// What is stored of a cell's particles in one run.
+/// The stored data of a cell's particles in one run.
 struct StoredParticles {
   std::size_t count = 0;                    ///< particles
   std::span<const double> pose;             ///< {scan, particle, 3}
@@ -82,7 +82,7 @@ struct StoredParticles {
 ReplayParticles thin_particles(const StoredParticles& stored, std::span<const std::size_t> scans,
                                std::size_t most);
 
-/// How much of a run a page can carry: some hundred thousand bytes over all cells.
+/// The amount of a run that a page can carry: some hundred thousand bytes over all cells.
 struct ReplaySize {
   std::size_t frames = 300;        ///< at most
   std::size_t particles = 100;     ///< of a cell in a frame, at most
@@ -94,17 +94,16 @@ struct ReplaySize {
 /// steps from scan to scan.
 Replay read_replay(const ResultFile& file, std::size_t run, const ReplaySize& size = {});
 
-/// How the map of a cell came to be, at as many of the frames, evenly, as `ellipses` in all allow:
-/// a landmark counts as changed once a drawing would show it; where only the final map is stored
-/// that one, at the last frame; else nothing.
+/// The growth of the map of a cell, at as many evenly spaced frames as `ellipses` in all allow. A
+/// landmark counts as changed if a drawing would show the change. If only the final map is stored,
+/// it is that one at the last frame; if none is stored, it is empty.
 std::vector<ReplayMap> read_maps(const ResultFile& file, const StoredCell& cell, std::size_t run,
                                  std::span<const std::size_t> frame_scans, std::size_t ellipses);
 
 /// A run as the page's player reads it (page/script/replay.js).
 std::string replay_json(const Replay& replay);
 
-/// The last moment of a replay as a drawing (SVG): of the first cells what the player shows of
-/// them.
+/// The last moment of a replay as a drawing (SVG), with the first cells as the player shows them.
 std::string replay_still(const Replay& replay);
 
 /// The run that chosen_run() chooses; without cells where there is none.

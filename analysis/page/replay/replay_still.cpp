@@ -81,7 +81,7 @@ struct View {
   double x_centre, y_centre, scale, width, height;
   double x(double metres) const { return width / 2.0 + (metres - x_centre) * scale; }
   double y(double metres) const { return height / 2.0 - (metres - y_centre) * scale; }
-  /// False of what is no number, too.
+  /// Returns false for values that are not numbers, too.
   bool shows(double metres_x, double metres_y) const {
     return std::abs(x(metres_x) - width / 2.0) < width &&
            std::abs(y(metres_y) - height / 2.0) < height;

@@ -20,7 +20,7 @@ namespace {
 
 using testing::Pair;
 
-/// A cell whose runs 0, 1, ... have these position RMSEs and as many seconds of CPU time; a
+/// A cell with runs 0, 1, ... that have these position RMSEs and as many seconds of CPU time; a
 /// negative one is a run that failed.
 CellAnalysis compared_cell(const std::string& label, const std::vector<double>& rmse,
                            double cpu_seconds = 1.0) {

@@ -73,7 +73,7 @@ TEST_F(RunsInFull, GiveAFigureOfOneRunAllThatIsThere) {
   EXPECT_THAT(read_replay(file, 2).cells[0].particles.frames, IsEmpty());
 }
 
-/// HDF5 unpacks what lies in one piece here.
+/// HDF5 unpacks data that lie in one piece here.
 TEST_F(RunsInFull, AreTheSameInAFileThatAnotherProgramPacked) {
   if (!installed("h5repack")) GTEST_SKIP() << "h5repack (hdf5-tools) is not installed";
   const auto packed = folder / "packed.h5";

@@ -36,7 +36,8 @@ bool is_in_sources(const std::string& text) {
   return analysis_sources().find(text) != std::string::npos;
 }
 
-/// Whether the sources name a key of a file as section_of(), figure_of() or prose() need it.
+/// Returns whether the sources name a key of a file as section_of(), figure_of() or prose() need
+/// it.
 bool is_used(std::string_view file, const std::string& key) {
   const std::string figure = "figure ";
   if (key == "section") return is_in_sources("section_of(\"" + std::string(file) + "\"");

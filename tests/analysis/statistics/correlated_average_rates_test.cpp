@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kFixes = 300;
 constexpr double kInfiniteMemory = 1e12;  // [s]
 
-/// How errors of variance 1 go together over a drive.
+/// The correlation over a drive of errors of variance 1.
 enum class Shape {
   one_memory,     ///< all components forget by exp(-t / memory)
   two_memories,   ///< half of the variance does, half is gone within a second

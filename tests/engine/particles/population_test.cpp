@@ -189,8 +189,8 @@ TEST_P(Schemes, SurviveWeightsThatSumToAlmostOne) {
   for (std::uint32_t k = 0; k < 200; ++k) children(GetParam(), weights, k);  // looks up .at(parent)
 }
 
-/// How far a number of children may be from its share n w, per scheme; the last population has
-/// several parts.
+/// The greatest distance of a number of children from its share n w, per scheme; the last
+/// population has several parts.
 TEST_P(Schemes, KeepNearTheShare) {
   for (std::uint32_t k = 0; k < 501; ++k) {
     const std::size_t n = k < 500 ? 37 : 5 * kParticlesPerSum + 17;

@@ -132,7 +132,7 @@ TEST_F(CheckDescription, RefusesReferencesThatAreNone) {
   });
 }
 
-/// For any value of one number the file is refused, or can be read.
+/// The file is refused or can be read for any value of one number.
 TEST_F(CheckDescription, FindsEveryOddNumber) {
   for (std::uint64_t seed = 0; seed < damaged_files(200); ++seed) {
     Dice dice(seed);

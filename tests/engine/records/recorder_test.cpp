@@ -129,7 +129,7 @@ TEST(Recorder, StoresJointEstimatesAtTheEndOfEachPartOfTheRun) {
               ElementsAre(0u, 1u, 0u, 1u, 0u, 1u));
 }
 
-/// A plan whose first cell declares two columns of its own and reports this number of values.
+/// A plan with a first cell that declares two columns of its own and reports this number of values.
 StudyPlan plan_with_own_columns(std::size_t values) {
   StudyPlan plan = small_result_plan();
   plan.cells[0] = scripted_cell("own", {.own_values = values});

@@ -86,7 +86,7 @@ TEST_F(GateOfAFile, WantsAllRuns) {
   expect_refused({"gate", "out.h5", "--cell", "right"}, "runs of cell right are missing");
 }
 
-/// How many files with how many rows.
+/// The numbers of files and of their rows.
 struct Size {
   int runs = 60, scans = 32;
 };

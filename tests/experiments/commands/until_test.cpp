@@ -42,7 +42,7 @@ class Until : public BlinkProgram {
   void expect_same_bits(const std::string& a, const std::string& b) const {
     EXPECT_EQ(difference(ResultFile(folder_ / a), ResultFile(folder_ / b)), "") << b;
   }
-  /// On any number of threads, and killed at some moments.
+  /// The study runs on any number of threads, and is killed at some moments.
   void expect_same_bits_however_run(const std::vector<std::string>& seconds) const {
     ASSERT_EQ(run("one.h5", {"--threads", "1"}).code, 0);
     ASSERT_EQ(run("two.h5", {"--threads", "2"}).code, 0);

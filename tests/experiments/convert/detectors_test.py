@@ -45,7 +45,7 @@ class Trees(unittest.TestCase):
     def test_are_found_and_left_out_by_each_step(self):
         third = 4 * HALF_DEGREE * 10 / 3  # of the diameter of four beams at 10 m
         for count, *surfaces in (
-                # 1: what is too far
+                # 1: a point that is too far
                 (1, (200, 200, 74.9)), (0, (200, 200, 75.0)), (0,),
                 # 2: cut where range or angle steps; segments that crowd each other are none
                 (1, (150, 151, 20.0), (152, 152, 21.4), (153, 154, 20.0)),

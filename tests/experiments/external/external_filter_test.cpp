@@ -83,8 +83,8 @@ class External : public ExternalStudy {
     const StoredCell& cell = file.cells().front();
     return {file.status(cell)[run], file.failure_steps(cell)[run], file.failure_reasons(cell)[run]};
   }
-  /// Of the first of two runs, and that the second did not suffer, unless every process fails so.
-  /// Message N is sent at step 2 N - 1: every second step has a scan.
+  /// Checks the failure of the first of two runs, and that the second did not suffer, unless every
+  /// process fails so. Message N is sent at step 2 N - 1: every second step has a scan.
   Failure first_failure(const std::string& arguments, const std::string& options = "") const {
     const ResultFile file = result_of(scripted(arguments, options), {kAtScans, "study.runs=2"});
     return failure_of(file, 0);

@@ -82,7 +82,7 @@ Stored read_stored(const fs::path& path) {
   return stored;
 }
 
-/// Which cells are in one only, or have other bits.
+/// The cells that are in one file only, or have other bits.
 std::vector<std::string> differing(const Fingerprints& a, const Fingerprints& b) {
   Fingerprints all = a;
   all.insert(b.begin(), b.end());

@@ -207,7 +207,7 @@ TEST(DifferentialEvolution, TheBestNeverGetsWorse) {
   }
 }
 
-/// How often the objective is asked.
+/// The number of evaluations of the objective.
 std::size_t evaluations(const EvolutionSettings& settings) {
   std::size_t count = 0;
   auto population = scattered<double>(10, 0);

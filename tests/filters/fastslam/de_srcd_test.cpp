@@ -127,7 +127,7 @@ TEST(DeSrcd, WeighsItsDrawsSoThatTheyAreThePosteriorWhereverItDrawsAbout) {
   }
 }
 
-/// A pose Gaussian, a linear detection of it, and what Bayes makes of both.
+/// A pose Gaussian, a linear detection of it, and the posterior by Bayes' theorem.
 struct LinearCase {
   PoseGaussian<double> prior{{1.0, -2.0, 0.4}, {0.04, 0.0, 1e-6, 0.0, 0.0, 1e-6}};
   double z = 1.5, r = 0.09;  ///< of x, with its variance

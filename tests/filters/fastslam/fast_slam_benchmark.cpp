@@ -14,8 +14,8 @@
 
 // Particle-observation and particle-step costs of the family, and of the plain filters (of
 // seven dimensions and fifteen points where the filter has points) in the same run: the ratio is
-// the figure to quote. All particles share one prediction, whose cost a step does not grow with
-// them. build/benchmarks --benchmark_filter='FastSlam2|UFastSlam|Srcd'
+// the figure to quote. All particles share one prediction, so that its cost per step does not
+// grow with them. build/benchmarks --benchmark_filter='FastSlam2|UFastSlam|Srcd'
 namespace montecarta::filters {
 namespace {
 

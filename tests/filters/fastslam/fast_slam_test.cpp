@@ -75,7 +75,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Variant{"srcd_pf", "ratio", nearest, 9, {{"map_uncertainty", "off"}}}),
     testing::PrintToStringParamName());
 
-/// In units of two metres: a power of two, so that no bit is lost.
+/// The form has units of two metres, a power of two, so that no bit is lost.
 template <class Real>
 struct InTwoMetres {
   BasicPoint<Real> mean{};

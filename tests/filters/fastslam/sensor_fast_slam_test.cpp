@@ -34,8 +34,8 @@ SmallWorldSettings two_scans_of(const Sensor& sensor) {
   return settings;
 }
 
-/// As FastSlam2.SeeingAgainFromAKnownPoseIsTheKalmanFiltersUpdate. A mounted one is updated as the
-/// pose of the sensor, which differs in the second order.
+/// The law is FastSlam2.SeeingAgainFromAKnownPoseIsTheKalmanFiltersUpdate. A mounted one is updated
+/// as the pose of the sensor, which differs in the second order.
 TEST(SensorFastSlam, SeeingAgainFromAKnownPoseIsTheKalmanFiltersUpdate) {
   for (const Mounting& mounting : {Mounting(), kMounted}) {
     const SmallWorldSettings settings = two_scans_of({PositionSensor(), mounting});
@@ -53,7 +53,7 @@ TEST(SensorFastSlam, SeeingAgainFromAKnownPoseIsTheKalmanFiltersUpdate) {
   }
 }
 
-/// Where the heading is all but known the model is linear: the batch is the sequence.
+/// The heading is nearly certain, so the model is linear and the batch equals the sequence.
 TEST(SensorFastSlam, WeighsByTheBatchAsByTheSequenceWhereTheModelIsLinear) {
   const SmallWorldSettings settings = two_scans_of({PositionSensor(), kMounted});
   const SmallWorld world = drive_of_two_scans(settings);
@@ -92,7 +92,7 @@ TEST(SensorFastSlam, LanesAreParticlesOneByOne) {
   expect_lanes_are_particles<BearingSensor>("closed");
 }
 
-/// What a filter tells of a drive with that mounting of the sensor.
+/// The reports of a filter on a drive with that mounting of the sensor.
 PoseMoments driven(const FilterKind& kind, const Sensor& sensor, const SmallWorld& world) {
   SmallWorldSettings settings = two_scans_of(sensor);
   std::map<std::string, std::string, std::less<>> special{{"particles", "30"}};
@@ -163,7 +163,7 @@ TEST(SensorFastSlam, GivesTheSameBitsOnAnyNumberOfThreads) {
   }
 }
 
-/// A pose and a landmark whose sight is long: what bends is nothing against the noise.
+/// A pose and a landmark so far away that the nonlinear terms are negligible beside the noise.
 TEST(SensorFastSlam, SigmaPointsOfALinearModelAreTheKalmanFilter) {
   SigmaPoints points({.motion = unscented_rule(5, 0.9, 2, 0),
                       .pose = unscented_rule(5, 0.9, 2, 0),

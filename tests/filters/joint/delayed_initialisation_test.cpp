@@ -44,7 +44,7 @@ void hide_after_first_detection(SmallWorld& world) {
   world.drive = shown;
 }
 
-/// Those of the map whose error is not beyond six standard deviations.
+/// The landmarks of the map with an error of at most six standard deviations.
 struct Map {
   std::size_t held = 0, near_truth = 0;
 };

@@ -17,7 +17,7 @@ namespace {
 
 const Pose kStart{4.0, -3.0, 0.5};
 
-/// What a literal filter says after every scan, and of landmarks {identity} in the end.
+/// The estimates of a literal filter after every scan, and of landmarks {identity} in the end.
 struct Said {
   std::vector<PoseMoments> poses;
   std::vector<std::optional<LandmarkEstimate>> map;

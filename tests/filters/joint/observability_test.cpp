@@ -90,8 +90,9 @@ TEST(RiekfSlam, IsEkfSlamUntilALandmarkIsSeenAgain) {
 /// Noise that bends the models: here EKF-SLAM and RI-EKF-SLAM part.
 Belief rough() { return {.control = {.sigma = {0.3, 0.1}}, .sigma_bearing = 0.05}; }
 
-/// How much of the heading's variance is left to a vehicle that drove blindly, stood, and looked a
-/// hundred times at landmarks it had never seen before: nothing of that tells where x points.
+/// The share of the heading's variance that is left to a vehicle that drove blindly, stood, and
+/// looked a hundred times at landmarks it had never seen before: nothing of that tells where x
+/// points.
 double heading_variance_left(const FilterKind& kind) {
   const auto filter = make_filter(kind, {.landmarks = 3, .noise = rough()});
   filter->start({5.0, 2.0, 1.0});

@@ -38,7 +38,7 @@ Vector7 random_mean(RngStream& draw) {
   return Vector7::NullaryExpr([&](Eigen::Index) { return 20.0 * draw.normal(); });
 }
 
-/// With the standard deviation of the heading [rad].
+/// A Gaussian with this standard deviation of the heading [rad].
 Matrix7 covariance_with(double sigma_heading, RngStream& draw) {
   const Matrix7 S = Matrix7::NullaryExpr([&](Eigen::Index) { return draw.normal(); });
   Matrix7 P = S * S.transpose();

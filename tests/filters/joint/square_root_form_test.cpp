@@ -30,7 +30,7 @@ Eigen::MatrixXd covariance_of(const JointGaussian& gaussian) {
   return P;
 }
 
-/// How far the covariance that production keeps is from that of the square root.
+/// Distance of the covariance that production keeps from that of the square root.
 struct Comparison {
   double worst = 0.0;             ///< of any entry, in standard deviations of its row and column
   double least_eigenvalue = 1.0;  ///< of production's correlations

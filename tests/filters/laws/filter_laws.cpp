@@ -26,7 +26,7 @@ std::unique_ptr<SlamFilter> make_default(const FilterKind& kind, std::size_t par
 /// Every filter there is, as a newcomer would get it.
 class EveryFilter : public testing::TestWithParam<FilterKind> {};
 
-/// Where a particle at `pose` (x, y, heading) would be a scan later without noise.
+/// The pose, a scan later and without noise, of a particle at `pose` (x, y, heading).
 Pose driven_on(const double* pose, const SmallWorldSettings& settings) {
   Pose next{pose[0], pose[1], pose[2]};
   for (std::size_t k = 0; k < settings.steps_per_scan; ++k) {
@@ -88,7 +88,7 @@ TEST_P(EveryFilter, StandsStillAtTheOriginOfTheMapWithoutHarm) {
   }
 }
 
-/// Whether a filter adds noise of its own to the motion at every scan, and says so.
+/// Returns whether a filter adds noise of its own to the motion at every scan, and says so.
 bool declares_a_noise_floor(const FilterKind& kind) {
   return std::any_of(kind.options.begin(), kind.options.end(),
                      [](const Parameter& option) { return option.key == "kernel_floor_xy"; });

@@ -23,7 +23,7 @@ struct Variant {
   Association association = Association::known;
   double tolerance = 1e-12;  ///< between production and plain Eigen
 
-  /// Whether differential evolution has members enough to change anything.
+  /// Returns whether differential evolution has members enough to change anything.
   bool evolves() const {
     const MapSettings map = marginal_settings(options(), choice()).map;
     return map.solver == MapSolver::de && map.population >= least_population(map.evolution.base);
@@ -163,7 +163,7 @@ SmallWorld with_echoes(const SmallWorld& world) {
   return other;
 }
 
-/// What of EQUATIONS 9, 14 and 17 the runs of a test met.
+/// The cases of EQUATIONS 9, 14 and 17 that occurred in the runs of a test.
 struct Met {
   std::size_t fresh = 0, between_the_gates = 0, lost_to_a_rival = 0, left_alone = 0, accepted = 0;
 
@@ -180,8 +180,8 @@ const Pose kAcrossBackward{-30.0, 50.0, 2.8};  // from here the circle crosses t
 
 class PlainMarginal : public testing::TestWithParam<Variant> {
  protected:
-  /// One run; returns what evolution met, whose questions are which of two places is fitter. Where
-  /// rounding decides one, two makes part for good.
+  /// Makes one run and returns the evolution, which decides which of two places is fitter. If
+  /// rounding changes one of these decisions, the two filters differ from then on.
   plain::Evolution<2> expect_equal(std::uint64_t seed) {
     const Variant& v = GetParam();
     const SmallWorldSettings settings{.seed = seed, .scans = 30};

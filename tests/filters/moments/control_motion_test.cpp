@@ -19,7 +19,7 @@ using plain::chol_in;
 using plain::heading_first;
 using plain::Vector;
 
-/// A motion so far, a step to come, and what is believed of both.
+/// A motion so far, a step to come, and the belief about both.
 struct Case {
   MotionIncrement before;
   Control control;
@@ -134,7 +134,7 @@ TEST(UnbiasedMotion, HasTheClosedFormOfAFrontAxle) {
 
 class EveryVehicleUnbiased : public testing::TestWithParam<SomeVehicle> {};
 
-// Of controls measured again and again the mean is the true displacement, and the covariance that
+// The mean over controls measured again and again is the true displacement, and the covariance that
 // of the means: 20000 draws, five standard errors.
 TEST_P(EveryVehicleUnbiased, HasTheTrueDisplacementAndItsErrorsCovarianceOnAverage) {
   const SomeVehicle& some = GetParam();

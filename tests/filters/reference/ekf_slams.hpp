@@ -63,7 +63,8 @@ class FullGaussian {
     mean.segment<3>(row) << there.x, there.y, there.heading;
     covariance = sandwich(F, covariance) + sandwich(G, Q().asDiagonal());
   }
-  /// Calls `see(detection, row)` of what is in the map, then append(detection, place) of the rest.
+  /// Calls `see(detection, row)` for landmarks in the map, then append(detection, place) for the
+  /// others.
   template <class See, class Place>
   void use(Scan scan, const See& see, const Place& place) {
     std::vector<Detection> fresh;
@@ -155,7 +156,7 @@ class FejEkfSlam : public FullGaussian {
   PoseMoments moments() const { return {pose_at(0), covariance.topLeftCorner<3, 3>()}; }
 
  private:
-  /// Where the next propagation begins: p*.
+  /// The point at which the next propagation begins: p*.
   void choose_origin() {
     is_updated_ = false;
     if (!constrained_) return;
@@ -181,7 +182,7 @@ class FejEkfSlam : public FullGaussian {
   bool is_updated_ = false;
   Eigen::Vector2d predicted_ = Eigen::Vector2d::Zero();
   Eigen::Vector2d moved_ = Eigen::Vector2d::Zero();  ///< sum of p* - p predicted
-  std::vector<Eigen::Vector2d> first_;               ///< as initialised, less what had moved then
+  std::vector<Eigen::Vector2d> first_;               ///< as initialised, less the motion until then
 };
 
 /// Robocentric EKF-SLAM as Castellanos, Martinez-Cantin, Tardos and Neira 2007 have it. The state
@@ -219,7 +220,7 @@ class RobocentricEkfSlam : public FullGaussian {
     compose_once();
   }
 
-  /// In the map: start (+) (base^-1 (+) motion).
+  /// The pose in the map: start (+) (base^-1 (+) motion).
   PoseMoments moments() const {
     const Eigen::Matrix2d B = rotation(-mean(2)), W = rotation(start_.heading);
     const Eigen::Vector2d way = B * (mean.segment<2>(3) - mean.head<2>());

@@ -64,7 +64,7 @@ class InvariantEkfSlam {
     for (std::size_t k = 0; k < points.size(); ++k) T.block<2, 1>(row(k), 2) = J() * points[k];
     return T * P * T.transpose();
   }
-  /// Which of `points` a landmark is; 0, the vehicle, where it is not in the map.
+  /// The index of a landmark in `points`; 0, the vehicle, if it is not in the map.
   std::size_t point_of(std::int32_t identity) const {
     for (std::size_t k = 0; k < identities.size(); ++k) {
       if (identities[k] == identity) return k + 1;

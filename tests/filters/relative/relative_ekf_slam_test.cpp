@@ -22,7 +22,7 @@ void expect_close(const std::vector<PoseMoments>& these, const std::vector<PoseM
   }
 }
 
-// With noise so fine that all models are linear.
+// The noise is so fine that all models are linear.
 TEST(RelativeEkfSlam, IsTheKalmanFilterOnALinearModel) {
   SmallWorldSettings settings{.seed = 46, .scans = 60};
   settings.noise = fine();

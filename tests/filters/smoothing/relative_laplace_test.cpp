@@ -47,7 +47,7 @@ TEST(PosesGivenMap, CovarianceIsThatOfTheDenseSmoother) {
   EXPECT_LT(largest_difference(P, dense.covariance(poses)), 1e-9);
 }
 
-/// To the covariance in map coordinates.
+/// Converts to the covariance in map coordinates.
 double difference(const Solved& solved) {
   const Elimination& elimination = solved.solver.elimination();
   const std::vector<std::size_t> newest{elimination.segments() - 1};

@@ -17,7 +17,7 @@ struct SmallGraph {
   std::vector<std::int32_t> identities;  ///< {landmark}
 };
 
-/// Where an estimate of the graph begins.
+/// The start of an estimate of the graph.
 enum class Beginning { dead_reckoning, truth };
 
 inline SmallGraph small_graph(const SmallWorld& world, const Belief& belief, Beginning beginning) {

@@ -166,7 +166,7 @@ TEST(Smoother, JointOfTheCarriedBeliefInsteadOfASolutionIsANumericalFault) {
   EXPECT_EQ(pushed->joint(settings.landmarks)->numerical_faults, 1u);
 }
 
-// With noise so fine that all models are linear it is the Kalman filter, by way of all poses.
+// The noise is so fine that all models are linear. The smoother is then the Kalman filter.
 TEST(Smoother, IsTheKalmanFilterOnALinearModel) {
   SmallWorldSettings settings{.seed = 46, .scans = 60};
   settings.noise = fine();
