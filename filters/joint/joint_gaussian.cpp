@@ -17,7 +17,9 @@ constexpr double kConverged = 1e-4;
 
 /// L^-T. For the triangular factor it takes two divisions; S itself is never inverted.
 Eigen::Matrix2d inverse_transposed(const InnovationFactor& L) {
-  return Eigen::Matrix2d{{1.0 / L.l00, -L.l10 / (L.l00 * L.l11)}, {0.0, 1.0 / L.l11}};
+  Eigen::Matrix2d inverse;
+  inverse << 1.0 / L.l00, -L.l10 / (L.l00 * L.l11), 0.0, 1.0 / L.l11;
+  return inverse;
 }
 
 using Matrix3 = Eigen::Matrix3d;

@@ -25,7 +25,9 @@ inline Eigen::Matrix2d exponential_jacobian(double turn) {
   const double chord = small ? 1.0 - half * half / 6.0 : half_sine / half;
   const double along = chord * std::cos(half);  // sin(turn) / turn
   const double across = chord * half_sine;      // (1 - cos(turn)) / turn
-  return Eigen::Matrix2d{{along, -across}, {across, along}};
+  Eigen::Matrix2d V;
+  V << along, -across, across, along;
+  return V;
 }
 
 /// J, the rotation by 90 degrees; J p is the displacement of p per rad of a rotation of the plane.

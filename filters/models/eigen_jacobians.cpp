@@ -4,7 +4,9 @@
 namespace montecarta::models {
 
 Eigen::Matrix3d pose_jacobian(const MotionJacobians<double>& j) {
-  return Eigen::Matrix3d{{1.0, 0.0, j.x_heading}, {0.0, 1.0, j.y_heading}, {0.0, 0.0, 1.0}};
+  Eigen::Matrix3d F;
+  F << 1.0, 0.0, j.x_heading, 0.0, 1.0, j.y_heading, 0.0, 0.0, 1.0;
+  return F;
 }
 
 ControlJacobian control_jacobian(const MotionJacobians<double>& j) {
@@ -17,19 +19,27 @@ ControlJacobian control_jacobian(const MotionJacobians<double>& j) {
 }
 
 Matrix23 pose_jacobian(const LinearisedObservation<double>& s) {
-  return Matrix23{{-s.range_x, -s.range_y, 0.0}, {-s.bearing_x, -s.bearing_y, -1.0}};
+  Matrix23 H;
+  H << -s.range_x, -s.range_y, 0.0, -s.bearing_x, -s.bearing_y, -1.0;
+  return H;
 }
 
 Eigen::Matrix2d landmark_jacobian(const LinearisedObservation<double>& s) {
-  return Eigen::Matrix2d{{s.range_x, s.range_y}, {s.bearing_x, s.bearing_y}};
+  Eigen::Matrix2d H;
+  H << s.range_x, s.range_y, s.bearing_x, s.bearing_y;
+  return H;
 }
 
 Matrix23 pose_jacobian(const LinearisedPlace<double>& p) {
-  return Matrix23{{1.0, 0.0, p.x_bearing}, {0.0, 1.0, p.y_bearing}};
+  Matrix23 G;
+  G << 1.0, 0.0, p.x_bearing, 0.0, 1.0, p.y_bearing;
+  return G;
 }
 
 Eigen::Matrix2d observation_jacobian(const LinearisedPlace<double>& p) {
-  return Eigen::Matrix2d{{p.x_range, p.x_bearing}, {p.y_range, p.y_bearing}};
+  Eigen::Matrix2d G;
+  G << p.x_range, p.x_bearing, p.y_range, p.y_bearing;
+  return G;
 }
 
 }  // namespace montecarta::models

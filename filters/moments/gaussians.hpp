@@ -45,7 +45,9 @@ struct Symmetric3 {
 
 /// Converts to a matrix.
 inline Eigen::Matrix3d symmetric(const Symmetric3<double>& P) {
-  return Eigen::Matrix3d{{P.xx, P.xy, P.xh}, {P.xy, P.yy, P.yh}, {P.xh, P.yh, P.hh}};
+  Eigen::Matrix3d matrix;
+  matrix << P.xx, P.xy, P.xh, P.xy, P.yy, P.yh, P.xh, P.yh, P.hh;
+  return matrix;
 }
 /// Converts from a matrix; only its upper triangle is read.
 inline Symmetric3<double> symmetric_of(const Eigen::Matrix3d& P) {
