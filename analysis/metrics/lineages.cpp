@@ -68,19 +68,14 @@ const std::vector<ResultNumber<LineageSummary>> kLineageQuantities = {
     {"coalesced_share", "1", &LineageSummary::coalesced_share, "scans with one", percent},
     {"monte_carlo_share", "1", &LineageSummary::monte_carlo_share}};
 
-/// Whether everyone is their own parent. Throws RunError where a parent does not exist.
-bool is_identity(std::span<const std::uint32_t> parents) {
-  std::uint32_t differences = 0, largest = 0;
-  for (std::uint32_t i = 0; i < parents.size(); ++i) {
-    differences |= parents[i] ^ i;
-    largest = std::max(largest, parents[i]);
-  }
-  if (largest >= parents.size()) {
-    throw RunError("ancestor: parent " + std::to_string(largest) + " of " +
-                   std::to_string(parents.size()) +
-                   " particles (the column is damaged): run the study again");
-  }
-  return differences == 0;
+/// Throws RunError where a parent does not exist.
+void expect_parents(std::span<const std::uint32_t> parents) {
+  std::uint32_t largest = 0;
+  for (const std::uint32_t parent : parents) largest = std::max(largest, parent);
+  if (largest < parents.size()) return;
+  throw RunError("ancestor: parent " + std::to_string(largest) + " of " +
+                 std::to_string(parents.size()) +
+                 " particles (the column is damaged): run the study again");
 }
 
 using Counts = std::vector<std::uint32_t>;
@@ -195,9 +190,15 @@ std::vector<Figure> particles_figures(const StudyAnalysis& study) {
 void find_resamplings(std::span<const std::uint32_t> ancestor, std::size_t particles,
                       std::vector<std::size_t>& resampled) {
   resampled.resize(particles == 0 ? 0 : ancestor.size() / particles);
+  std::vector<std::uint32_t> themselves(particles);
+  std::iota(themselves.begin(), themselves.end(), 0u);
   std::size_t latest = 0;
   for (std::size_t s = 0; s < resampled.size(); ++s) {
-    if (!is_identity(ancestor.subspan(s * particles, particles))) latest = s + 1;
+    const auto parents = ancestor.subspan(s * particles, particles);
+    if (!std::ranges::equal(parents, themselves)) {
+      expect_parents(parents);
+      latest = s + 1;
+    }
     resampled[s] = latest;
   }
 }
@@ -259,11 +260,11 @@ void LineageWalker::walk_from(std::size_t s, const RunRows& rows, std::span<cons
   count_until(times[s] + kSameTime);
 }
 
-Lineages LineageWalker::walk(const RunRows& rows, std::size_t particles,
+Lineages LineageWalker::walk(const RunRows& rows, std::span<const std::size_t> resampled,
                              std::span<const double> times,
                              std::span<const double> squared_position) {
-  ancestor_.resize(particles);
-  find_resamplings(rows.ancestor, particles, resampled_);
+  ancestor_.resize(rows.ancestor.size() / times.size());
+  resampled_ = resampled;
   Sums sums;
   const std::size_t every = (times.size() + kMostScansOfLineages - 1) / kMostScansOfLineages;
   for (std::size_t s = every - 1; s < times.size(); s += every) {
@@ -316,36 +317,31 @@ Metric lineages_metric() {
           .add_numbers = numbers_by(kLineageQuantities)};
 }
 
-/// Walks from resampling to resampling; between them everyone is their own parent.
-std::uint32_t DiversityCounter::ancestors_before(std::size_t first, std::size_t s) {
+/// Walks from resampling to resampling, until one ancestor is left; between them everyone is their
+/// own parent.
+void DiversityCounter::walk_back(std::size_t first, std::size_t s) {
+  path_.clear();
   set_.start(particles_);
-  for (std::size_t next = resampled_[s]; next > first;) {
+  for (std::size_t next = s + 1; next > first && set_.size() > 1;) {
     set_.step_back(parents(next - 1));
+    path_.push_back({next - 1, static_cast<std::uint32_t>(set_.size())});
     next = next > 1 ? resampled_[next - 2] : 0;
   }
-  return static_cast<std::uint32_t>(set_.size());
 }
 
-void DiversityCounter::count_last_resampling() {
-  for (std::size_t s = 0; s < resampled_.size(); ++s) {
-    auto& distinct = result_.last_resampling[s];
-    if (resampled_[s] == s + 1) {
-      distinct = ancestors_before(s, s);
-    } else if (s > 0) {
-      distinct = result_.last_resampling[s - 1];
-    }
-  }
-}
-
-void DiversityCounter::count_lag(std::span<const double> times) {
+void DiversityCounter::count_back(std::span<const double> times) {
+  auto all = static_cast<std::uint32_t>(particles_), last = all;
+  path_.clear();
   std::size_t first = 0;  // the first scan later than kDiversityLag ago
   for (std::size_t s = 0; s < times.size(); ++s) {
-    const std::size_t first_before = first;
     while (times[first] <= times[s] - kDiversityLag + 1e-9) ++first;
-    const auto outside = [&](std::size_t f) { return f == 0 ? 0 : resampled_[f - 1]; };
-    const bool same =
-        s > 0 && resampled_[s] == resampled_[s - 1] && outside(first) == outside(first_before);
-    result_.lag[s] = same ? result_.lag[s - 1] : ancestors_before(first, s);
+    if (resampled_[s] == s + 1) {
+      walk_back(first, s);
+      last = path_.front().ancestors;
+    }
+    while (!path_.empty() && path_.back().scan < first) path_.pop_back();
+    result_.last_resampling[s] = last;
+    result_.lag[s] = path_.empty() ? all : path_.back().ancestors;
   }
 }
 
@@ -354,14 +350,12 @@ void DiversityCounter::count_root() {
   root_.resize(particles_);
   std::iota(root_.begin(), root_.end(), 0u);
   for (std::size_t s = 0; s < resampled_.size(); ++s) {
-    if (resampled_[s] == s + 1) {
+    if (resampled_[s] == s + 1 && set_.size() > 1) {
       previous_ = root_;
       for (std::size_t i = 0; i < particles_; ++i) root_[i] = previous_[parents(s)[i]];
       set_.assign(root_);
-      result_.root[s] = static_cast<std::uint32_t>(set_.size());
-    } else if (s > 0) {
-      result_.root[s] = result_.root[s - 1];
     }
+    result_.root[s] = static_cast<std::uint32_t>(set_.size());
   }
 }
 
@@ -371,11 +365,10 @@ const Diversity& DiversityCounter::count(Row ancestor, std::size_t particles,
   ancestor_ = ancestor;
   particles_ = particles;
   for (auto* column : {&result_.last_resampling, &result_.lag, &result_.root}) {
-    column->assign(times.size(), static_cast<std::uint32_t>(particles));
+    column->resize(times.size());
   }
   find_resamplings(ancestor, particles, resampled_);
-  count_last_resampling();
-  count_lag(times);
+  count_back(times);
   count_root();
   return result_;
 }

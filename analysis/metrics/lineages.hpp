@@ -79,10 +79,10 @@ struct Lineages {
 /// Follows a genealogy back from several scans. Keeps its memory from run to run.
 class LineageWalker {
  public:
-  /// `rows` with ancestors of `particles`; `squared_position` {scan} [m^2] may be empty; `times`
-  /// [s].
-  Lineages walk(const RunRows& rows, std::size_t particles, std::span<const double> times,
-                std::span<const double> squared_position);
+  /// `rows` with ancestors; `resampled` {scan} by find_resamplings(); `squared_position` {scan}
+  /// [m^2] may be empty; `times` [s].
+  Lineages walk(const RunRows& rows, std::span<const std::size_t> resampled,
+                std::span<const double> times, std::span<const double> squared_position);
 
  private:
   struct Sums;
@@ -90,7 +90,7 @@ class LineageWalker {
   double family_variance(const RunRows& rows, std::size_t s);
 
   AncestorSet set_;
-  std::vector<std::size_t> resampled_;   ///< find_resamplings()
+  std::span<const std::size_t> resampled_;
   std::vector<std::uint32_t> ancestor_;  ///< {particle} of the scan where the walk began
   std::vector<double> families_;         ///< {ancestor, 2} weighted deviation of its descendants
 };
@@ -146,22 +146,29 @@ class DiversityCounter {
   /// [s] of the scans.
   const Diversity& count(std::span<const std::uint32_t> ancestor, std::size_t particles,
                          std::span<const double> times);
+  /// Those of the same run, by find_resamplings().
+  std::span<const std::size_t> resampled() const { return resampled_; }
 
  private:
+  /// A resampling, and the number of ancestors before it.
+  struct Step {
+    std::size_t scan;
+    std::uint32_t ancestors;
+  };
   using Row = std::span<const std::uint32_t>;
   /// Parents of all particles of scan `s`.
   Row parents(std::size_t s) const { return ancestor_.subspan(s * particles_, particles_); }
-  void count_last_resampling();
-  void count_lag(std::span<const double> times);
+  void count_back(std::span<const double> times);
   void count_root();
-  /// Number of ancestors that the particles of scan `s` had before scan `first`.
-  std::uint32_t ancestors_before(std::size_t first, std::size_t s);
+  /// Fills `path_` with the resamplings from scan `s`, which is one, back to scan `first`.
+  void walk_back(std::size_t first, std::size_t s);
 
   Row ancestor_;
   std::size_t particles_ = 0;
   Diversity result_;
   std::vector<std::size_t> resampled_;   ///< find_resamplings()
   AncestorSet set_;                      ///< being walked back
+  std::vector<Step> path_;               ///< of the last resampling, the latest first
   std::vector<std::uint32_t> root_;      ///< {particle} ancestor at the start
   std::vector<std::uint32_t> previous_;  ///< root_ one resampling earlier
 };

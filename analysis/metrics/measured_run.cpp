@@ -257,7 +257,7 @@ void RunMetrics::measure(const RunRows& rows, std::size_t particles,
   lineages_.reset();
   if (rows.ancestor.empty()) return;
   diversity_ = &counter_.count(rows.ancestor, particles, times);
-  lineages_ = walker_.walk(rows, particles, times, squared_position_);
+  lineages_ = walker_.walk(rows, counter_.resampled(), times, squared_position_);
 }
 
 double RunCriteria::verdict_level(std::uint64_t runs) const {

@@ -11,10 +11,19 @@
 #include <cmath>
 #include <cstdint>
 #include <set>
+#include <span>
 #include <vector>
 
 namespace montecarta::analysis {
 namespace {
+
+/// Of scans that are one second apart.
+Lineages lineages_of(const RunRows& rows, std::size_t particles, std::size_t scans,
+                     std::span<const double> squared_position = {}) {
+  std::vector<std::size_t> resampled;
+  find_resamplings(rows.ancestor, particles, resampled);
+  return LineageWalker().walk(rows, resampled, scan_times(scans), squared_position);
+}
 
 /// Twenty scans, one a second, of four particles: nobody is replaced but before scan 10 (from 0),
 /// when 0 and 1 take over, and before scan 15, when all become children of 2, who is one of 1's.
@@ -31,7 +40,7 @@ RunRows two_resamplings() {
 
 // Twenty scans are all looked at. A scan s >= 15 looks back s - 14 seconds to the common ancestor.
 TEST(Lineages, KnowTwoResamplingsByHand) {
-  const Lineages found = LineageWalker().walk(two_resamplings(), 4, scan_times(20), {});
+  const Lineages found = lineages_of(two_resamplings(), 4, 20);
   EXPECT_DOUBLE_EQ(found.coalesced_share, 5.0 / 20.0);
   EXPECT_NEAR(found.coalescence, (1.0 + 2.0 + 3.0 + 4.0 + 5.0) / 5.0, 1e-6);
   // One second back: scan 10 sees 2, scan 15 sees 1, the others 4.
@@ -54,7 +63,7 @@ TEST(Lineages, GiveTheVarianceOfAMeanOfIndependentParticles) {
         rows.particle_pose.push_back(value);
     }
   }
-  const Lineages found = LineageWalker().walk(rows, kParticles, scan_times(kSeconds), {});
+  const Lineages found = lineages_of(rows, kParticles, kSeconds);
   const double expected = (4.0 + 1.0) / static_cast<double>(kParticles);
   EXPECT_NEAR(found.monte_carlo_variance, expected, 0.1 * expected);
 }
@@ -70,7 +79,7 @@ TEST(Lineages, WeighFamiliesByHand) {
       rows.particle_pose.insert(rows.particle_pose.end(), {x, 7.0, 0.0});
     }
   }
-  const Lineages found = LineageWalker().walk(rows, 3, scan_times(12), {});
+  const Lineages found = lineages_of(rows, 3, 12);
   EXPECT_NEAR(found.monte_carlo_variance, 2.0 * 1.98 * 1.98, 1e-9);
 }
 
@@ -82,7 +91,7 @@ TEST(Lineages, LookAtErrorsOfTheSameScans) {
     rows.ancestor.insert(rows.ancestor.end(), {0, 1});
     squares.push_back(static_cast<double>(s));
   }
-  EXPECT_DOUBLE_EQ(LineageWalker().walk(rows, 2, scan_times(64), squares).squared_error, 32.0);
+  EXPECT_DOUBLE_EQ(lineages_of(rows, 2, 64, squares).squared_error, 32.0);
 }
 
 TEST(LineageSums, AverageWhatRunsHave) {
