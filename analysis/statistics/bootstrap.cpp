@@ -3,6 +3,7 @@
 
 #include "analysis/statistics/spread.hpp"
 #include "engine/errors.hpp"
+#include "engine/numbers/lanes.hpp"
 #include "engine/random/stream.hpp"
 
 #include <boost/math/distributions/normal.hpp>
@@ -16,6 +17,7 @@ namespace {
 constexpr std::size_t kMostReplicates = 2000, kFewestReplicates = 400;
 constexpr std::size_t kMostDraws = 20'000'000;
 constexpr std::size_t kMostRunsToDraw = 20'000;
+constexpr std::size_t kSums = engine::Lanes::kSize;  // that grow at once
 
 double normal_share(double z) { return boost::math::cdf(boost::math::normal(), z); }
 
@@ -117,21 +119,23 @@ std::vector<Interval> bootstrap_means(std::span<const std::vector<double>> colum
     expect(columns[c].size() == runs, "columns of a bootstrap have a value a run");
     if (all_finite(columns[c])) known.push_back(c);
   }
-  std::vector<double> rows;  // {run, known column}: all sums of a replicate grow at once
+  const std::size_t width = (known.size() + kSums - 1) / kSums * kSums;
+  std::vector<double> rows(runs * width);  // {run, known column}
   for (std::size_t i = 0; i < runs; ++i) {
-    for (const std::size_t c : known) rows.push_back(columns[c][i]);
+    for (std::size_t k = 0; k < known.size(); ++k) rows[i * width + k] = columns[known[k]][i];
   }
-  std::vector<std::vector<double>> means(known.size(), std::vector<double>(replicates));
+  std::vector<std::vector<double>> means(width, std::vector<double>(replicates));
   std::vector<std::uint32_t> drawn;
-  std::vector<double> sums(known.size());
   for (std::size_t b = 0; b < replicates; ++b) {
     draw_runs(runs, b, drawn);
-    std::ranges::fill(sums, 0.0);
-    for (const std::uint32_t i : drawn) {
-      const double* const row = rows.data() + i * known.size();
-      for (std::size_t k = 0; k < sums.size(); ++k) sums[k] += row[k];
+    for (std::size_t first = 0; first < width; first += kSums) {
+      engine::Lanes sums(0.0);  // of as many columns as a register has
+      for (const std::uint32_t i : drawn) {
+        sums = sums + engine::Lanes::load_unaligned(rows.data() + i * width + first);
+      }
+      for (std::size_t k = 0; k < kSums; ++k)
+        means[first + k][b] = sums.get(k) / static_cast<double>(runs);
     }
-    for (std::size_t k = 0; k < sums.size(); ++k) means[k][b] = sums[k] / static_cast<double>(runs);
   }
   const double deviate = widened_deviate(runs, level);
   for (std::size_t k = 0; k < known.size(); ++k) {

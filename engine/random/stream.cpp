@@ -37,11 +37,12 @@ double RngStream::uniform() {
 }
 
 std::uint32_t RngStream::below(std::uint32_t count) {
-  // Lemire's method: the number is drawn again in the biased tail of the product.
-  const std::uint32_t tail = (0U - count) % count;
+  // Lemire's method: the number is drawn again in the biased tail of the product, which is shorter
+  // than `count`, so that its length is hardly ever needed.
   for (;;) {
     const std::uint64_t product = (bits() >> 32) * count;
-    if (static_cast<std::uint32_t>(product) >= tail)
+    const auto low = static_cast<std::uint32_t>(product);
+    if (low >= count || low >= (0U - count) % count)
       return static_cast<std::uint32_t>(product >> 32);
   }
 }
