@@ -9,12 +9,16 @@
 #include <boost/math/distributions/normal.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <set>
 
 namespace montecarta::analysis {
 namespace {
+
+constexpr std::size_t kLagsTogether = 24;  // lags from 0 in whole registers
+static_assert(kInnovationLags < kLagsTogether);
 
 /// How many standard deviations white innovations keep to at all of `lags` lags (Sidak).
 double white_deviate(std::size_t lags, double level) {
@@ -162,25 +166,35 @@ InnovationSums::InnovationSums(std::size_t scans)
 
 void InnovationSums::add(std::span<const double> nis, std::span<const std::uint32_t> dof) {
   bool has_any = false;
-  deviations_.assign(nis.size(), kNaN);
+  // Backwards, so that earlier scans lie behind, and with zeros where there is none.
+  deviations_.assign(nis.size() + kLagsTogether, 0.0);
+  is_there_.assign(deviations_.size(), 0.0);
   for (std::size_t s = 0; s < nis.size(); ++s) {
     if (dof[s] == 0 || !std::isfinite(nis[s])) continue;
     const double n = dof[s];
     nis_.add(s, nis[s], n);
     has_any = true;
-    deviations_[s] = (nis[s] - n) / std::sqrt(2.0 * n);
+    const std::size_t place = nis.size() - 1 - s;
+    deviations_[place] = (nis[s] - n) / std::sqrt(2.0 * n);
+    is_there_[place] = 1.0;
   }
   if (!has_any) return;
   ++runs_;
-  for (std::size_t s = 0; s < deviations_.size(); ++s) {
-    if (std::isnan(deviations_[s])) continue;
-    for (std::size_t lag = 0; lag < std::min(products_.size(), s + 1); ++lag) {
-      const double earlier = deviations_[s - lag];
-      if (std::isnan(earlier)) continue;
-      products_[lag].n += 1.0;
-      products_[lag].both += deviations_[s] + earlier;
-      products_[lag].product += deviations_[s] * earlier;
+  std::array<double, kLagsTogether> n{}, both{}, product{};
+  for (std::size_t place = nis.size(); place-- > 0;) {
+    if (is_there_[place] == 0.0) continue;
+    const double* const earlier = deviations_.data() + place;
+    const double* const is_there = is_there_.data() + place;
+    for (std::size_t lag = 0; lag < kLagsTogether; ++lag) {
+      n[lag] += is_there[lag];
+      both[lag] += is_there[lag] * (*earlier + earlier[lag]);
+      product[lag] += *earlier * earlier[lag];
     }
+  }
+  for (std::size_t lag = 0; lag < products_.size(); ++lag) {
+    products_[lag].n += n[lag];
+    products_[lag].both += both[lag];
+    products_[lag].product += product[lag];
   }
 }
 

@@ -63,7 +63,8 @@ class InnovationSums {
     }
   };
   std::vector<Products> products_;  ///< {lag} from 0
-  std::vector<double> deviations_;  ///< {scan} of the run at hand; NaN without detections
+  /// {scan} of the run at hand, the last one first: deviations, and 1 where there is one.
+  std::vector<double> deviations_, is_there_;
 };
 
 }  // namespace montecarta::analysis
