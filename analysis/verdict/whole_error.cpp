@@ -200,39 +200,48 @@ void WholeError::add_squares(const WhitenedRun& run) {
     const bool has_any = std::ranges::any_of(errors, [](double u) { return !std::isnan(u); });
     whole_samples_ += has_any ? 1.0 : 0.0;
   }
+  Sum size = size_;  // registers add faster than memory
   for (std::size_t stretch = 0; stretch < stretches_; ++stretch) {
+    Sum sum = stretch_[stretch];
     for (std::size_t s = first_scan(stretch); s < first_scan(stretch + 1); ++s) {
       for (std::size_t k = 0; k < dimension_; ++k) {
-        size_.add(run.whitened[s * dimension_ + k]);
-        stretch_[stretch].add(run.whitened[s * dimension_ + k]);
+        size.add(run.whitened[s * dimension_ + k]);
+        sum.add(run.whitened[s * dimension_ + k]);
         component_[k].add(run.standardised[s * dimension_ + k]);
       }
     }
-    stretch_[stretch].end_run();
+    sum.end_run();
+    stretch_[stretch] = sum;
   }
-  size_.end_run();
+  size.end_run();
+  size_ = size;
   for (Sum& sum : component_) sum.end_run();
 }
 
 void WholeError::add_means(const WhitenedRun& run) {
-  const auto add_mean = [&](SummaryOf& sums, auto value_at) {
+  struct Mean {
     double sum = 0.0, n = 0.0;
-    for (std::size_t at = 0; at < scans_ * dimension_; at += dimension_) {
-      const double value = value_at(at);
-      if (std::isnan(value)) continue;
+    void add(double value) {
+      if (std::isnan(value)) return;
       sum += value;
       n += 1.0;
     }
-    if (n > 0.0) sums.add(sum / n);
+    void end_run(SummaryOf& means) const {
+      if (n > 0.0) means.add(sum / n);
+    }
   };
-  std::size_t pair = 0;
-  for (std::size_t a = 0; a < dimension_; ++a) {
-    add_mean(bias_[a], [&](std::size_t at) { return run.standardised[at + a]; });
-    for (std::size_t b = a + 1; b < dimension_; ++b) {
-      add_mean(correlation_[pair++],
-               [&](std::size_t at) { return run.whitened[at + a] * run.whitened[at + b]; });
+  std::vector<Mean> bias(bias_.size()), correlation(correlation_.size());
+  for (std::size_t at = 0; at < scans_ * dimension_; at += dimension_) {
+    auto pair = correlation.begin();
+    for (std::size_t a = at; a < at + dimension_; ++a) {
+      bias[a - at].add(run.standardised[a]);
+      for (std::size_t b = a + 1; b < at + dimension_; ++b) {
+        (pair++)->add(run.whitened[a] * run.whitened[b]);
+      }
     }
   }
+  for (std::size_t a = 0; a < bias.size(); ++a) bias[a].end_run(bias_[a]);
+  for (std::size_t p = 0; p < correlation.size(); ++p) correlation[p].end_run(correlation_[p]);
 }
 
 /// Returns whether at most a tenth of the samples have a singular covariance. Otherwise the size is
