@@ -10,8 +10,7 @@
 #include "analysis/verdict/family.hpp"
 #include "engine/core/pose.hpp"
 #include "engine/errors.hpp"
-
-#include <Eigen/Geometry>
+#include "engine/numbers/real.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -20,6 +19,14 @@ namespace montecarta::analysis {
 namespace {
 
 using RowMajor3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
+DrawsScales scales_of(const EffectiveDraws& draws) {
+  DrawsScales scales;
+  for (std::size_t d = 1; d <= scales.size(); ++d) {
+    if (sampler_scale(d).can_judge(draws)) scales[d - 1] = sampler_scale(d).line(draws);
+  }
+  return scales;
+}
 
 Pose pose_of(const std::vector<double>& rows, std::size_t s) {
   return {rows[3 * s], rows[3 * s + 1], rows[3 * s + 2]};
@@ -55,25 +62,26 @@ void measure_imported(const ErrorRows& errors, bool is_pose, NeesRows& rows) {
   }
 }
 
-/// Turns forward and left of a vehicle of this heading [rad] out of x and y.
-Eigen::Matrix3d vehicle_from_map(double heading) {
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-  turn.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(-heading).toRotationMatrix();
-  return turn;
+/// Turns x and y of `error`, and of the covariance of scan `s` if there is one, to forward and left
+/// of a vehicle that heads `ahead`; `P` becomes that covariance. All is done in place: copies of
+/// numbers that were just written would wait for memory.
+void turn_pose(const Direction<double>& ahead, const std::vector<double>& covariances,
+               std::size_t s, Eigen::Vector3d& error, Eigen::Matrix3d& P) {
+  const Eigen::Matrix2d turn{{ahead.cosine, ahead.sine}, {-ahead.sine, ahead.cosine}};
+  error.head<2>() = turn * error.head<2>();
+  if (covariances.empty()) return;
+  P = Eigen::Map<const RowMajor3>(covariances.data() + 9 * s);
+  P.topRows<2>() = turn * P.topRows<2>();
+  P.leftCols<2>() = P.leftCols<2>() * turn.transpose();
 }
 
 /// Makes errors of drawn poses normal: the squares of all components together, and each component
 /// by itself, become as large as they are probable (STATISTICS 4).
-void put_on_normal_scale(const EffectiveDraws& draws, std::size_t rank, std::span<double> whitened,
-                         std::span<double> standardised) {
+void put_on_normal_scale(const DrawsScales& scales, WhitenedPose& pose) {
   double squares = 0.0;
-  for (const double u : whitened) squares += std::isnan(u) ? 0.0 : u * u;
-  const double scale =
-      squares > 0.0 ? std::sqrt(sampler_scale(rank)(squares, draws) / squares) : 1.0;
-  for (double& u : whitened) u *= scale;
-  for (double& z : standardised) {
-    z = std::copysign(std::sqrt(sampler_scale(1)(z * z, draws)), z);
-  }
+  for (const double u : pose.whitened) squares += std::isnan(u) ? 0.0 : u * u;
+  if (squares > 0.0) pose.whitened *= std::sqrt((*scales[pose.rank - 1])(squares) / squares);
+  for (double& z : pose.standardised) z = std::copysign(std::sqrt((*scales[0])(z * z)), z);
 }
 
 void put_on_full_scale(NeesRows& rows) {
@@ -132,32 +140,26 @@ RunPits measured_pits(const MeasuredRun& run, const RunCriteria& criteria, std::
 }  // namespace
 
 void RunMetrics::measure_errors(const RunRows& rows, std::size_t scans) {
-  const std::vector<double>& mean = estimate_of(rows).mean;
-  squared_position_.clear();
-  squared_heading_.clear();
-  errors_.clear();
-  covariances_.clear();
-  if (rows.truth.empty() || mean.empty()) return;
-  expect(rows.truth.size() == 3 * scans && mean.size() == 3 * scans, "poses are {scan, 3}");
+  const auto& [mean, covariance] = estimate_of(rows);
+  if (rows.truth.empty() || mean.empty()) scans = 0;
+  expect(scans == 0 || (rows.truth.size() == 3 * scans && mean.size() == 3 * scans),
+         "poses are {scan, 3}");
+  squared_position_.resize(scans);
+  squared_heading_.resize(scans);
+  errors_.resize(scans);
+  ahead_.resize(scans);
+  covariances_.resize(covariance.empty() ? 0 : scans);
+  estimates_.resize(covariances_.size());
+  Eigen::Matrix3d none;
   for (std::size_t s = 0; s < scans; ++s) {
-    const Eigen::Vector3d error = boxminus(pose_of(mean, s), pose_of(rows.truth, s));
-    squared_position_.push_back(error(0) * error(0) + error(1) * error(1));
-    squared_heading_.push_back(error(2) * error(2));
-    errors_.push_back(error);
-  }
-  turn_into_vehicle(rows);
-}
-
-void RunMetrics::turn_into_vehicle(const RunRows& rows) {
-  const std::vector<double>& covariance = estimate_of(rows).covariance;
-  turns_.clear();
-  for (std::size_t s = 0; s < errors_.size(); ++s) {
-    const Eigen::Matrix3d& turn =
-        turns_.emplace_back(vehicle_from_map(pose_of(rows.truth, s).heading));
-    errors_[s] = turn * errors_[s];
-    if (covariance.empty()) continue;
-    const Eigen::Matrix3d P = Eigen::Map<const RowMajor3>(covariance.data() + 9 * s);
-    covariances_.emplace_back(turn * P * turn.transpose());
+    const Pose truth = pose_of(rows.truth, s);
+    Eigen::Vector3d& error = errors_[s];
+    error = boxminus(pose_of(mean, s), truth);
+    squared_position_[s] = error(0) * error(0) + error(1) * error(1);
+    squared_heading_[s] = error(2) * error(2);
+    ahead_[s] = direction_of(truth.heading);
+    turn_pose(ahead_[s], covariance, s, error, covariance.empty() ? none : covariances_[s]);
+    if (!covariance.empty()) analysis::whiten_pose(error, covariances_[s], estimates_[s]);
   }
 }
 
@@ -167,60 +169,49 @@ const NeesRows* RunMetrics::leading_nees() const {
   return found == nees_.end() ? nullptr : &*found;
 }
 
-void RunMetrics::find_draws(const RunRows& rows, std::size_t particles) {
-  draws_.assign(rows.spread.covariance.size() / 9, std::nullopt);
-  if (particles == 0) return;
-  for (std::size_t s = 0; s < draws_.size(); ++s) {
-    if (is_drawn(rows, s)) draws_[s] = draws_at(rows, particles, s);
-  }
-}
-
 /// Poses that a scan drew are judged as so many draws. Where none were drawn the covariance has
 /// each particle's own in it, and is judged as it is.
-void RunMetrics::correct_spread(std::size_t particles) {
+void RunMetrics::correct_spread(std::size_t s, const std::optional<DrawsScales>& scales) {
   NeesRows& corrected = nees_[static_cast<std::size_t>(Moments::corrected)];
-  corrected = particles > 0 ? nees(Moments::spread) : NeesRows{};
   const NeesRows& mixture = nees(Moments::mixture);
   for (std::size_t b = 0; b < kErrorBlocks.size(); ++b) {
-    const SamplerScale& whole = sampler_scale(dimension_of(kErrorBlocks[b]));
-    std::vector<double>& value = corrected.value[b];
-    std::vector<int>& rank = corrected.rank[b];
-    corrected.too_few[b].assign(value.size(), 0);
-    for (std::size_t s = 0; s < value.size(); ++s) {
-      if (!draws_[s]) {
-        corrected.set(b, s, {mixture.value[b][s], mixture.rank[b][s]});
-        continue;
-      }
-      const EffectiveDraws& draws = *draws_[s];
-      corrected.too_few[b][s] = whole.can_judge(draws) ? 0 : 1;
-      if (!whole.can_judge(draws)) {
-        value[s] = kNaN;
-      } else if (rank[s] > 0) {
-        value[s] = sampler_scale(static_cast<std::size_t>(rank[s]))(value[s], draws);
-      }
+    double& value = corrected.value[b][s];
+    const auto rank = static_cast<std::size_t>(std::max(corrected.rank[b][s], 0));
+    if (!scales) {
+      corrected.set(b, s, {mixture.value[b][s], mixture.rank[b][s]});
+    } else if (!(*scales)[dimension_of(kErrorBlocks[b]) - 1]) {
+      corrected.too_few[b][s] = 1;
+      value = kNaN;
+    } else if (rank > 0) {
+      value = (*(*scales)[rank - 1])(value);
     }
   }
 }
 
 /// Writes one scan of a pose by the moments that lead there.
-void RunMetrics::whiten_pose(const RunRows& rows, std::size_t s) {
-  const std::optional<EffectiveDraws>& draws = draws_[s];
-  const MomentRows& moments = draws || rows.mixture.covariance.empty() ? rows.spread : rows.mixture;
-  const auto u = std::span(whitened_.whitened).subspan(3 * s, 3);
-  const auto z = std::span(whitened_.standardised).subspan(3 * s, 3);
-  std::size_t rank = 0;
+void RunMetrics::whiten_pose(const RunRows& rows, std::size_t s,
+                             const std::optional<DrawsScales>& scales) {
+  const MomentRows& moments =
+      scales || rows.mixture.covariance.empty() ? rows.spread : rows.mixture;
+  WhitenedPose pose;
   if (&moments == &estimate_of(rows)) {
-    rank = analysis::whiten_pose(errors_[s], covariances_[s], u, z);
+    pose = estimates_[s];
   } else {
-    const Eigen::Matrix3d& turn = turns_[s];
-    const Eigen::Vector3d error = boxminus(pose_of(moments.mean, s), pose_of(rows.truth, s));
-    const Eigen::Matrix3d P = Eigen::Map<const RowMajor3>(moments.covariance.data() + 9 * s);
-    rank = analysis::whiten_pose(turn * error, turn * P * turn.transpose(), u, z);
+    Eigen::Vector3d error = boxminus(pose_of(moments.mean, s), pose_of(rows.truth, s));
+    Eigen::Matrix3d P;
+    turn_pose(ahead_[s], moments.covariance, s, error, P);
+    analysis::whiten_pose(error, P, pose);
   }
-  if (draws && rank > 0) put_on_normal_scale(*draws, rank, u, z);
+  if (scales && pose.rank > 0) put_on_normal_scale(*scales, pose);
+  Eigen::Vector3d::Map(whitened_.whitened.data() + 3 * s) = pose.whitened;
+  Eigen::Vector3d::Map(whitened_.standardised.data() + 3 * s) = pose.standardised;
 }
 
-void RunMetrics::whiten_errors(const RunRows& rows) {
+void RunMetrics::correct_and_whiten(const RunRows& rows, std::size_t particles) {
+  NeesRows& corrected = nees_[static_cast<std::size_t>(Moments::corrected)];
+  corrected = particles > 0 ? nees(Moments::spread) : NeesRows{};
+  for (std::size_t b = 0; b < kErrorBlocks.size(); ++b)
+    corrected.too_few[b].assign(corrected.value[b].size(), 0);
   const NeesRows* leading = leading_nees();
   whitened_.dimension = leading == nullptr ? 0 : leading->dimension[0];
   const std::size_t d = whitened_.dimension, scans = d == 0 ? 0 : leading->value[0].size();
@@ -228,9 +219,14 @@ void RunMetrics::whiten_errors(const RunRows& rows) {
   whitened_.standardised.assign(scans * d, kNaN);
   const Eigen::VectorXd exact = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(d));
   for (std::size_t s = 0; s < scans; ++s) {
+    std::optional<DrawsScales> scales;
+    if (leading == &corrected) {
+      if (is_drawn(rows, s)) scales = scales_of(draws_at(rows, particles, s));
+      correct_spread(s, scales);
+    }
     if (std::isnan(leading->value[0][s])) continue;
     if (rows.error.components() == 0) {
-      whiten_pose(rows, s);
+      whiten_pose(rows, s, scales);
       continue;
     }
     whiten(rows.error.error(s), rows.error.covariance_of(s), exact,
@@ -249,10 +245,8 @@ void RunMetrics::measure(const RunRows& rows, std::size_t particles,
     measure_nees(rows.truth, rows.spread, spread);
   }
   measure_nees(rows.truth, rows.mixture, nees_[static_cast<std::size_t>(Moments::mixture)]);
-  find_draws(rows, particles);
-  correct_spread(particles);
+  correct_and_whiten(rows, particles);
   for (NeesRows& all : nees_) put_on_full_scale(all);
-  whiten_errors(rows);
   diversity_ = nullptr;
   lineages_.reset();
   if (rows.ancestor.empty()) return;
@@ -298,7 +292,7 @@ void MeasuredRun::measure(const RunCriteria& criteria, std::size_t particles) {
   const DriveCriteria* own = criteria.drives.empty() ? nullptr : &criteria.drives.at(rows.run);
   const std::span<const double> times = own != nullptr ? own->times : criteria.times;
   metrics.measure(rows, particles, times);
-  proper = proper_scores(rows, particles, metrics.errors(), metrics.covariances());
+  proper = proper_scores(rows, particles, metrics.estimates());
   references.clear();
   for (const PathAtFixes& fixes : own != nullptr ? own->references : criteria.references) {
     references.push_back(measure_against(fixes, rows.path));

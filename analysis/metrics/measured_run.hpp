@@ -13,6 +13,7 @@
 #include "analysis/metrics/proper_scores.hpp"
 #include "analysis/metrics/references.hpp"
 #include "analysis/verdict/whole_error.hpp"
+#include "engine/numbers/real.hpp"
 #include "engine/records/result_file.hpp"
 
 #include <Eigen/Core>
@@ -48,6 +49,9 @@ struct NeesRows {
   }
 };
 
+/// {components - 1} The scales for the draws of a scan; nullopt where these are too few.
+using DrawsScales = std::array<std::optional<SamplerScale::Line>, 3>;
+
 /// Errors and NEES of one run at every scan. Keeps its memory from run to run; one per thread.
 class RunMetrics {
  public:
@@ -71,26 +75,25 @@ class RunMetrics {
   const std::vector<Eigen::Vector3d>& errors() const { return errors_; }
   /// {scan} covariance of estimate_of() in the same frame; empty where none is stored.
   const std::vector<Eigen::Matrix3d>& covariances() const { return covariances_; }
+  /// {scan} those errors in units of that covariance; empty where none is stored.
+  const std::vector<WhitenedPose>& estimates() const { return estimates_; }
   /// nullptr if no ancestry is stored; likewise lineages().
   const Diversity* diversity() const { return diversity_; }
   const Lineages* lineages() const { return lineages_ ? &*lineages_ : nullptr; }
 
  private:
   void measure_errors(const RunRows& rows, std::size_t scans);
-  void turn_into_vehicle(const RunRows& rows);
-
-  void find_draws(const RunRows& rows, std::size_t particles);
-  void correct_spread(std::size_t particles);
-  void whiten_pose(const RunRows& rows, std::size_t s);
-  void whiten_errors(const RunRows& rows);
+  void correct_and_whiten(const RunRows& rows, std::size_t particles);
+  void correct_spread(std::size_t s, const std::optional<DrawsScales>& scales);
+  void whiten_pose(const RunRows& rows, std::size_t s, const std::optional<DrawsScales>& scales);
 
   std::array<NeesRows, kMoments.size()> nees_;  ///< {Moments}
   WhitenedRun whitened_;
   std::vector<double> squared_position_, squared_heading_;
   std::vector<Eigen::Vector3d> errors_;
   std::vector<Eigen::Matrix3d> covariances_;
-  std::vector<Eigen::Matrix3d> turns_;                ///< {scan} from the map to the vehicle
-  std::vector<std::optional<EffectiveDraws>> draws_;  ///< {scan} nullopt where none were drawn
+  std::vector<WhitenedPose> estimates_;
+  std::vector<engine::Direction<double>> ahead_;  ///< {scan} of the true vehicle
   DiversityCounter counter_;
   const Diversity* diversity_ = nullptr;
   LineageWalker walker_;

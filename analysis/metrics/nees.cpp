@@ -45,44 +45,63 @@ using Mat = Eigen::Matrix<double, D, D>;
 
 double capped(double nees) { return nees <= kLargestNees ? nees : kLargestNees; }
 
-/// L^-1 e with P = L L', by Cholesky of the correlation matrix, so that the pivots are independent
-/// of units; nullopt if P is singular. Writes the determinant of P if `determinant` is given.
+/// An error in units of its covariance P.
 template <int D>
-std::optional<Vec<D>> whitened(const Vec<D>& error, const Mat<D>& covariance,
-                               const Vec<D>& least_variance, double* determinant = nullptr) {
-  if (!(covariance.diagonal().array() > least_variance.array()).all()) return std::nullopt;
-  const Vec<D> scale = covariance.diagonal().cwiseSqrt().cwiseInverse();
-  Mat<D> L = Mat<D>::Zero(error.size(), error.size());
-  Vec<D> y(error.size());
+struct Whitened {
+  Vec<D> error;      ///< L^-1 e with P = L L'
+  Vec<D> deviation;  ///< of each component
+  double determinant;
+};
+
+/// By Cholesky of the correlation matrix, so that the pivots are independent of units; nullopt if P
+/// is singular.
+template <int D>
+std::optional<Whitened<D>> whitened(const Vec<D>& error, const Mat<D>& covariance,
+                                    const Vec<D>& least_variance) {
+  std::optional<Whitened<D>> found;
+  if (!(covariance.diagonal().array() > least_variance.array()).all()) return found;
+  found.emplace(Vec<D>(error.size()), covariance.diagonal().cwiseSqrt(), 0.0);
+  const Vec<D> scale = found->deviation.cwiseInverse();
+  Vec<D>& y = found->error;
+  Mat<D> L(error.size(), error.size());
   for (int i = 0; i < error.size(); ++i) {
     double rest = error(i) * scale(i);
     double pivot = 1.0;
     for (int j = 0; j < i; ++j) {
       double element = covariance(i, j) * scale(i) * scale(j);
       for (int k = 0; k < j; ++k) element -= L(i, k) * L(j, k);
-      L(i, j) = element / L(j, j);
+      L(i, j) = j == 0 ? element : element / L(j, j);  // L(0, 0) is 1
       pivot -= L(i, j) * L(i, j);
       rest -= L(i, j) * y(j);
     }
-    if (!(pivot > kLeastPivot)) return std::nullopt;
+    if (!(pivot > kLeastPivot)) {
+      found.reset();
+      return found;
+    }
     L(i, i) = i == 0 ? 1.0 : std::sqrt(pivot);
-    y(i) = rest / L(i, i);
+    y(i) = i == 0 ? rest : rest / L(i, i);
   }
-  if (determinant != nullptr) {
-    *determinant = covariance.diagonal().prod() * L.diagonal().cwiseAbs2().prod();
-  }
-  return y;
+  found->determinant = covariance.diagonal().prod() * L.diagonal().cwiseAbs2().prod();
+  return found;
 }
 
 /// e' P^-1 e; nullopt if P is singular.
 template <int D>
 std::optional<double> quadratic_form(const Vec<D>& error, const Mat<D>& covariance,
                                      const Vec<D>& least_variance) {
-  const std::optional<Vec<D>> y = whitened<D>(error, covariance, least_variance);
-  if (!y) return std::nullopt;
+  const auto found = whitened<D>(error, covariance, least_variance);
+  if (!found) return std::nullopt;
   double sum = 0.0;
-  for (int i = 0; i < y->size(); ++i) sum += (*y)(i) * (*y)(i);
+  for (const double y : found->error) sum += y * y;
   return sum;
+}
+
+/// Nullopt also if a number is not finite; there is no branch for each of them.
+std::optional<Whitened<3>> whitened_pose(const Eigen::Vector3d& error,
+                                         const Eigen::Matrix3d& covariance) {
+  const bool is_finite = (error - error).sum() + (covariance - covariance).sum() == 0.0;
+  if (!is_finite) return std::nullopt;
+  return whitened<3>(error, covariance, kLeastDeviation.cwiseAbs2());
 }
 
 constexpr Nees kUnusableSample = {kNaN, Nees::kUnusable};
@@ -160,22 +179,21 @@ Nees nees(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance, int f
 
 std::array<Nees, kErrorBlocks.size()> pose_nees(const Eigen::Vector3d& error,
                                                 const Eigen::Matrix3d& covariance) {
-  const Nees heading = nees<1>(error, covariance, 2);
-  const bool is_finite = error.allFinite() && covariance.allFinite();
-  const auto y =
-      is_finite ? whitened<3>(error, covariance, kLeastDeviation.cwiseAbs2()) : std::nullopt;
-  if (!y) return {nees<3>(error, covariance), nees<2>(error, covariance), heading};
-  const double position = (*y)(0) * (*y)(0) + (*y)(1) * (*y)(1);
-  return {Nees{capped(position + (*y)(2) * (*y)(2)), 3}, Nees{capped(position), 2}, heading};
+  const auto found = whitened_pose(error, covariance);
+  if (!found) {
+    return {nees<3>(error, covariance), nees<2>(error, covariance), nees<1>(error, covariance, 2)};
+  }
+  const Eigen::Vector3d& y = found->error;
+  const double position = y(0) * y(0) + y(1) * y(1);
+  const double heading = error(2) * (1.0 / found->deviation(2));
+  return {Nees{capped(position + y(2) * y(2)), 3}, Nees{capped(position), 2},
+          Nees{capped(heading * heading), 1}};
 }
 
-double negative_log_density(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance) {
-  if (!error.allFinite() || !covariance.allFinite()) return kNaN;
-  double determinant = 0.0;
-  const auto y = whitened<3>(error, covariance, kLeastDeviation.cwiseAbs2(), &determinant);
-  if (!y) return kNaN;
-  return 0.5 * (3.0 * std::log(2.0 * std::numbers::pi) + std::log(determinant) +
-                capped((*y)(0) * (*y)(0) + (*y)(1) * (*y)(1) + (*y)(2) * (*y)(2)));
+double negative_log_density(const WhitenedPose& pose) {
+  const Eigen::Vector3d& y = pose.whitened;
+  return 0.5 * (3.0 * std::log(2.0 * std::numbers::pi) + std::log(pose.determinant) +
+                capped(y(0) * y(0) + y(1) * y(1) + y(2) * y(2)));
 }
 
 Nees imported_nees(const Eigen::VectorXd& error, const Eigen::MatrixXd& P) {
@@ -192,21 +210,21 @@ Nees imported_nees(const Eigen::VectorXd& error, const Eigen::MatrixXd& P) {
   return nees_in_range(error, P, least);
 }
 
-std::size_t whiten_pose(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance,
-                        std::span<double> whitened_error, std::span<double> standardised) {
-  const Eigen::Vector3d least = kLeastDeviation.cwiseAbs2();
-  const bool is_finite = error.allFinite() && covariance.allFinite();
-  const auto y = is_finite ? whitened<3>(error, covariance, least) : std::nullopt;
-  if (!y || y->cwiseAbs().maxCoeff() > kLargestError) {
-    return whiten(error, covariance, kLeastDeviation, whitened_error, standardised);
+void whiten_pose(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance,
+                 WhitenedPose& pose) {
+  const auto found = whitened_pose(error, covariance);
+  pose.determinant = found ? found->determinant : kNaN;
+  if (!found || found->error.cwiseAbs().maxCoeff() > kLargestError) {
+    pose.rank = whiten(error, covariance, kLeastDeviation, std::span(pose.whitened.data(), 3),
+                       std::span(pose.standardised.data(), 3));
+    return;
   }
   for (Eigen::Index k = 0; k < 3; ++k) {
-    const auto component = static_cast<std::size_t>(k);
-    whitened_error[component] = (*y)(k);
-    standardised[component] =
-        std::clamp(error(k) / std::sqrt(covariance(k, k)), -kLargestError, kLargestError);
+    pose.whitened(k) = found->error(k);
+    pose.standardised(k) =
+        std::clamp(error(k) / found->deviation(k), -kLargestError, kLargestError);
   }
-  return 3;
+  pose.rank = 3;
 }
 
 std::size_t whiten(const Eigen::VectorXd& error, const Eigen::MatrixXd& covariance,
@@ -220,14 +238,14 @@ std::size_t whiten(const Eigen::VectorXd& error, const Eigen::MatrixXd& covarian
   for (Eigen::Index i = 0; i < error.size(); ++i) {
     if (covariance(i, i) > least(i)) open.push_back(i);
   }
-  const auto y = whitened<Eigen::Dynamic>(error(open), covariance(open, open), least(open));
-  if (!y) return 0;
-  const double largest = open.empty() ? 0.0 : y->cwiseAbs().maxCoeff();
+  const auto found = whitened<Eigen::Dynamic>(error(open), covariance(open, open), least(open));
+  if (!found) return 0;
+  const double largest = open.empty() ? 0.0 : found->error.cwiseAbs().maxCoeff();
   const double scale = largest > kLargestError ? kLargestError / largest : 1.0;
   for (std::size_t k = 0; k < open.size(); ++k) {
     const auto component = static_cast<std::size_t>(open[k]);
     const double by_deviation = error(open[k]) / std::sqrt(covariance(open[k], open[k]));
-    whitened_error[component] = scale * (*y)(static_cast<Eigen::Index>(k));
+    whitened_error[component] = scale * found->error(static_cast<Eigen::Index>(k));
     standardised[component] = std::clamp(by_deviation, -kLargestError, kLargestError);
   }
   return open.size();

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <span>
 
 namespace montecarta::analysis {
@@ -75,9 +76,6 @@ Nees nees(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance, int f
 std::array<Nees, kErrorBlocks.size()> pose_nees(const Eigen::Vector3d& error,
                                                 const Eigen::Matrix3d& covariance);
 
-/// -log N(error; 0, covariance) of a pose; NaN if the covariance is singular or unusable.
-double negative_log_density(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance);
-
 /// NEES of an imported estimate: `error` {d} with `covariance` {d, d}, which is also unusable if it
 /// is not symmetric (to 1e-6 of the standard deviations).
 Nees imported_nees(const Eigen::VectorXd& error, const Eigen::MatrixXd& covariance);
@@ -90,9 +88,19 @@ std::size_t whiten(const Eigen::VectorXd& error, const Eigen::MatrixXd& covarian
                    const Eigen::VectorXd& least_deviation, std::span<double> whitened_error,
                    std::span<double> standardised);
 
-/// The same for a pose; components count as exact under the conditions of nees().
-std::size_t whiten_pose(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance,
-                        std::span<double> whitened_error, std::span<double> standardised);
+/// A pose error in units of its covariance by whiten().
+struct WhitenedPose {
+  Eigen::Vector3d whitened, standardised;
+  std::size_t rank = 0;                                           ///< components that are not NaN
+  double determinant = std::numeric_limits<double>::quiet_NaN();  ///< of P; NaN if it is singular
+};
+
+/// Writes `pose`; components count as exact under the conditions of nees().
+void whiten_pose(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance,
+                 WhitenedPose& pose);
+
+/// -log N(error; 0, P); NaN if P is singular or unusable.
+double negative_log_density(const WhitenedPose& pose);
 
 /// Converts the NEES of a covariance of lower rank to the scale of `dimension` components: the
 /// value of equal probability under the chi-square law of `dimension` degrees of freedom. Beyond

@@ -4,7 +4,6 @@
 
 #include "analysis/metrics/cell_report.hpp"
 #include "analysis/metrics/measured_run.hpp"
-#include "analysis/metrics/nees.hpp"
 #include "analysis/statistics/spread.hpp"
 #include "engine/numbers/real.hpp"
 
@@ -60,11 +59,9 @@ std::vector<Section> proper_scores_sections(const StudyAnalysis& study) {
 
 }  // namespace
 
-double log_score(std::span<const Eigen::Vector3d> errors,
-                 std::span<const Eigen::Matrix3d> covariances) {
+double log_score(std::span<const WhitenedPose> errors) {
   std::vector<double> values;
-  for (std::size_t s = 0; s < covariances.size(); ++s)
-    values.push_back(negative_log_density(errors[s], covariances[s]));
+  for (const WhitenedPose& error : errors) values.push_back(negative_log_density(error));
   return mean_of_finite(values);
 }
 
@@ -86,9 +83,8 @@ double energy_score(std::span<const double> pose, std::span<const double> log_we
 }
 
 ProperScores proper_scores(const RunRows& rows, std::size_t particles,
-                           std::span<const Eigen::Vector3d> errors,
-                           std::span<const Eigen::Matrix3d> covariances) {
-  return {log_score(errors, covariances), mean_energy_score(rows, particles)};
+                           std::span<const WhitenedPose> errors) {
+  return {log_score(errors), mean_energy_score(rows, particles)};
 }
 
 Metric proper_scores_metric() {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "analysis/data/run_rows.hpp"
+#include "analysis/metrics/nees.hpp"
 
 #include <Eigen/Core>
 
@@ -26,19 +27,15 @@ struct ProperScores {
 inline constexpr std::size_t kMostEnergyScans = 20;
 
 /// -log N(e; 0, P), mean over scans; scans with a singular or unusable covariance are left out.
-/// Both {scan}, in one frame.
-double log_score(std::span<const Eigen::Vector3d> errors,
-                 std::span<const Eigen::Matrix3d> covariances);
+double log_score(std::span<const WhitenedPose> errors);
 
 /// E|X - y| - E|X - X'| / 2 [m] of weighted positions X; `pose` {particle, 3} [m, m, rad],
 /// `log_weight` {particle} normalised, `truth` [m].
 double energy_score(std::span<const double> pose, std::span<const double> log_weight,
                     const Eigen::Vector2d& truth);
 
-/// Both scores of a run: `errors` and `covariances` are those of RunMetrics, `particles` is their
-/// number.
+/// Both scores of a run: `errors` {scan} are those of RunMetrics, `particles` is their number.
 ProperScores proper_scores(const RunRows& rows, std::size_t particles,
-                           std::span<const Eigen::Vector3d> errors,
-                           std::span<const Eigen::Matrix3d> covariances);
+                           std::span<const WhitenedPose> errors);
 
 }  // namespace montecarta::analysis

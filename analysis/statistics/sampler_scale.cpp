@@ -69,25 +69,30 @@ bool SamplerScale::can_judge(const EffectiveDraws& draws) const {
   return draws.of_mean > dimension_ + 2.0;
 }
 
-double SamplerScale::operator()(double nees, const EffectiveDraws& draws) const {
+SamplerScale::Line SamplerScale::line(const EffectiveDraws& draws) const {
   expect(can_judge(draws), "enough draws to be judged by their spread");
-  if (std::isnan(nees) || nees == 0.0) return nees;
   const double E = draws.of_mean, freedom = draws.of_variance - dimension_;  // second of the F
-  const double f = nees * (E - 1.0) / (E + 1.0) * freedom / (draws.of_variance - 1.0);  // times d
   const double place = std::min(1.0 / (freedom * kMostInverse), 1.0) * kFreedoms;
   const auto step = std::min(static_cast<std::size_t>(place), kFreedoms - 1);
-  const double part = place - static_cast<double>(step);
-  const double *const lower = row(step), *const upper = row(step + 1);
-  const auto log_f_at = [&](std::size_t column) {
-    return lower[column] + part * (upper[column] - lower[column]);
-  };
+  Line line;
+  line.lower_ = row(step);
+  line.upper_ = row(step + 1);
+  line.part_ = place - static_cast<double>(step);
+  line.last_ = columns_ - 1;
+  line.factor_ = (E - 1.0) / (E + 1.0) * freedom / (draws.of_variance - 1.0);
+  line.beyond_ = std::exp2(octave_of(line.last_) - line.log_f_at(line.last_));
+  return line;
+}
+
+double SamplerScale::Line::operator()(double nees) const {
+  if (std::isnan(nees) || nees == 0.0) return nees;
+  const double f = nees * factor_;
   const double log_f = std::log2(f);
-  const std::size_t last = columns_ - 1;
+  if (log_f >= log_f_at(last_)) return f * beyond_;
   if (log_f <= log_f_at(0)) return f * std::exp2(octave_of(0) - log_f_at(0));
-  if (log_f >= log_f_at(last)) return f * std::exp2(octave_of(last) - log_f_at(last));
   // Where f would lie if the ratio were 1 is near where it lies.
   const double near = std::max((log_f - kFirstOctave) * kStepsPerOctave, 0.0);
-  std::size_t below = std::min(static_cast<std::size_t>(near), last - 1);
+  std::size_t below = std::min(static_cast<std::size_t>(near), last_ - 1);
   while (log_f_at(below) > log_f) --below;
   while (log_f_at(below + 1) <= log_f) ++below;
   const double first = log_f_at(below), second = log_f_at(below + 1);

@@ -30,11 +30,30 @@ class SamplerScale {
  public:
   explicit SamplerScale(std::size_t dimension);
 
+  /// The scale for some draws, between two rows of the table. The SamplerScale must outlive it.
+  class Line {
+   public:
+    /// `nees` >= 0, to a thousandth (a table); NaN stays NaN.
+    double operator()(double nees) const;
+
+   private:
+    friend class SamplerScale;
+    double log_f_at(std::size_t column) const {
+      return lower_[column] + part_ * (upper_[column] - lower_[column]);
+    }
+
+    const double *lower_, *upper_;
+    double part_;       ///< of the way from `lower_` to `upper_`
+    std::size_t last_;  ///< column
+    double factor_;     ///< d F by the NEES
+    double beyond_;     ///< chi-square by d F beyond the last column
+  };
+
   /// Whether the NEES of an ideal sampler has a mean: more than dimension + 2 effective draws.
   bool can_judge(const EffectiveDraws& draws) const;
-  /// `nees` >= 0 of draws that can_judge() takes, to a thousandth (a table); NaN stays
-  /// NaN.
-  double operator()(double nees, const EffectiveDraws& draws) const;
+  /// For draws that can_judge() takes.
+  Line line(const EffectiveDraws& draws) const;
+  double operator()(double nees, const EffectiveDraws& draws) const { return line(draws)(nees); }
 
  private:
   static constexpr std::size_t kFreedoms = 128;  // steps of 1 / freedom

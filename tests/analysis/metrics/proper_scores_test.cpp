@@ -18,8 +18,14 @@ namespace {
 
 const double kLogTwoPi = std::log(2.0 * std::numbers::pi);
 
+WhitenedPose whitened(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance) {
+  WhitenedPose pose;
+  whiten_pose(error, covariance, pose);
+  return pose;
+}
+
 double log_score_of(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance) {
-  return log_score(std::vector{error}, std::vector{covariance});
+  return log_score(std::vector{whitened(error, covariance)});
 }
 
 TEST(LogScore, IsTheNegativeLogarithmOfTheDensityWhereThereIsOne) {
@@ -35,10 +41,11 @@ TEST(LogScore, IsTheNegativeLogarithmOfTheDensityWhereThereIsOne) {
   const Eigen::Matrix3d singular = Eigen::Vector3d(1, 1, 0).asDiagonal();
   const Eigen::Matrix3d indefinite = Eigen::Vector3d(1, 1, -1).asDiagonal();
   const Eigen::Vector3d none = Eigen::Vector3d::Zero();
-  EXPECT_NEAR(log_score(std::vector{none, none, none}, std::vector{singular, one, indefinite}),
+  EXPECT_NEAR(log_score(std::vector{whitened(none, singular), whitened(none, one),
+                                    whitened(none, indefinite)}),
               1.5 * kLogTwoPi, 1e-14);
   EXPECT_TRUE(std::isnan(log_score_of(none, singular)));
-  EXPECT_TRUE(std::isnan(log_score({}, {})));
+  EXPECT_TRUE(std::isnan(log_score({})));
 }
 
 TEST(EnergyScore, KnowsTwoParticlesByHand) {
