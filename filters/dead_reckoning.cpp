@@ -2,6 +2,7 @@
 #include "filters/dead_reckoning.hpp"
 
 #include "filters/moments/motion_increment.hpp"
+#include "filters/setup/filter_setup.hpp"
 
 namespace montecarta::filters {
 namespace {
