@@ -60,7 +60,9 @@ std::optional<Whitened<D>> whitened(const Vec<D>& error, const Mat<D>& covarianc
                                     const Vec<D>& least_variance) {
   std::optional<Whitened<D>> found;
   if (!(covariance.diagonal().array() > least_variance.array()).all()) return found;
-  found.emplace(Vec<D>(error.size()), covariance.diagonal().cwiseSqrt(), 0.0);
+  found.emplace();
+  found->error.resize(error.size());
+  found->deviation = covariance.diagonal().cwiseSqrt();
   const Vec<D> scale = found->deviation.cwiseInverse();
   Vec<D>& y = found->error;
   Mat<D> L(error.size(), error.size());

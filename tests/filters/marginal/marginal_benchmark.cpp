@@ -115,7 +115,7 @@ void MapFitness(benchmark::State& state, MapObjective objective) {
 void MapFitnessPlain(benchmark::State& state) {
   const auto n = static_cast<std::size_t>(state.range(0));
   const auto column = poses<double>(n);
-  const Eigen::Matrix2d R = Eigen::Vector2d(kNoise.range, kNoise.bearing).asDiagonal();
+  const Eigen::Matrix2d R = Eigen::Vector2d(kNoise.first, kNoise.second).asDiagonal();
   const Eigen::LLT<Eigen::Matrix2d> factor(R);
   for (auto _ : state) {
     for (std::size_t k = 0; k < kCandidates; ++k) {

@@ -73,7 +73,7 @@ TEST(RelativeGaussian, IsConditionedAsByKalmanWhereAllIsLinear) {
   const Eigen::VectorXd x = gaussian.mean(), z = expected_of(gaussian, x);
   const auto scan = scan_of(gaussian, kFine, 0.7);
   const auto outcome = gaussian.see(scan, 20);
-  const Eigen::VectorXd R = Eigen::Vector2d(kFine.range, kFine.bearing).replicate<3, 1>();
+  const Eigen::VectorXd R = Eigen::Vector2d(kFine.first, kFine.second).replicate<3, 1>();
   const Eigen::MatrixXd S = H * P * H.transpose() + Eigen::MatrixXd(R.asDiagonal());
   Eigen::VectorXd v(6);
   for (const auto& [l, seen] : scan)
@@ -103,8 +103,8 @@ TEST(RelativeGaussian, ComesToTheMinimumWhereItIsNotLinear) {
   Eigen::VectorXd weighed(6);
   for (const auto& [l, seen] : scan) {
     const auto row = 2 * static_cast<Eigen::Index>(l);
-    weighed(row) = (seen.range - z(row)) / kRough.range;
-    weighed(row + 1) = wrap(seen.bearing - z(row + 1)) / kRough.bearing;
+    weighed(row) = (seen.range - z(row)) / kRough.first;
+    weighed(row + 1) = wrap(seen.bearing - z(row + 1)) / kRough.second;
   }
   EXPECT_GT((gaussian.mean() - before).norm(), 0.5);
   EXPECT_LT((gaussian.mean() - before - PH * weighed).norm(), 0.01 * std::sqrt(P.trace()));
@@ -209,8 +209,8 @@ TEST(RelativeGaussian, ALandmarkSeenAwayFromTheFrameIsWhereItIsSeen) {
   EXPECT_NEAR(z(7), 0.6, 1e-12);
   const Eigen::MatrixXd H = derivative_of(gaussian).bottomRows<2>();
   const Eigen::Matrix2d seen = H * gaussian.covariance() * H.transpose();
-  EXPECT_NEAR(seen(0, 0), kRough.range, 1e-4 * kRough.range);
-  EXPECT_NEAR(seen(1, 1), kRough.bearing, 1e-4 * kRough.bearing);
+  EXPECT_NEAR(seen(0, 0), kRough.first, 1e-4 * kRough.first);
+  EXPECT_NEAR(seen(1, 1), kRough.second, 1e-4 * kRough.second);
 }
 
 TEST(RelativeGaussian, TellsWhatIsExpectedOfAllLandmarks) {
@@ -218,7 +218,7 @@ TEST(RelativeGaussian, TellsWhatIsExpectedOfAllLandmarks) {
   const Eigen::MatrixXd H = derivative_of(gaussian);
   const Eigen::VectorXd z = expected_of(gaussian, gaussian.mean());
   Eigen::MatrixXd S = H * gaussian.covariance() * H.transpose();
-  S.diagonal() += Eigen::Vector2d(kRough.range, kRough.bearing).replicate<3, 1>();
+  S.diagonal() += Eigen::Vector2d(kRough.first, kRough.second).replicate<3, 1>();
   std::size_t told = 0;
   gaussian.expect_all(
       [&](std::size_t l, const RangeBearing<double>& expected, const Eigen::Matrix2d& covariance) {
