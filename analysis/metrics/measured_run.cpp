@@ -170,7 +170,7 @@ const NeesRows* RunMetrics::leading_nees() const {
 }
 
 /// Poses that a scan drew are judged as so many draws. Where none were drawn the covariance has
-/// each particle's own in it, and is judged as it is.
+/// each particle's own in it and is judged as it is, if the filter has a mixture (STATISTICS 4).
 void RunMetrics::correct_spread(std::size_t s, const std::optional<DrawsScales>& scales) {
   NeesRows& corrected = nees_[static_cast<std::size_t>(Moments::corrected)];
   const NeesRows& mixture = nees(Moments::mixture);

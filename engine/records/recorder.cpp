@@ -117,7 +117,7 @@ const PoseEstimate* Recorder::record_pose(const SlamFilter& filter, std::size_t 
   if (!estimate_.mixture) {
     if (!columns_.pose_mean_mixture.empty())
       throw StudyError(
-          "the filter declares a mixture and its estimate has none: clear Capabilities::mixture");
+          "the filter declares a mixture and estimates none: clear FilterKind::reports.mixture");
     return &estimate_;
   }
   copy(estimate_.mixture->mean, row_of(columns_.pose_mean_mixture, row, 3));
