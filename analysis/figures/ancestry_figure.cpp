@@ -76,8 +76,8 @@ class BranchTracer {
   std::vector<std::size_t> open_;           ///< {particle} the branch that forks there
 };
 
-/// The places of the lines: small families below large ones, parents half way between their first
-/// and last child.
+/// Places the lines: small families below large ones, parents half way between their first and last
+/// child.
 void set_heights(AncestryTree& tree) {
   std::vector<Branch>& branches = tree.branches;
   std::vector<std::vector<std::size_t>> children(branches.size() + 1);  // last: of the start
@@ -207,7 +207,7 @@ ChartPanel chart_panel(const DrawnTree& cell, const Frame& data) {
   return panel;
 }
 
-/// The begin of the second panel of a row: shortly before the youngest common ancestor.
+/// The time at which the second panel of a row begins: shortly before the youngest common ancestor.
 double begin_of_resolved(const DrawnTree& cell) {
   const double since = cell.tree.common_ancestor();
   return std::max(0.0, since - 0.08 * (cell.end - since));

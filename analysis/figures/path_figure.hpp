@@ -23,8 +23,8 @@ struct Ellipse {
   double angle = 0.0;  ///< [deg] of the major axis
 };
 
-/// The interval of two standard deviations of a Gaussian along each axis. `xx`, `xy`, `yy` [m^2]; a
-/// covariance with a negative eigenvalue has a diameter of NaN, which is not drawn.
+/// The ellipse of two standard deviations of a Gaussian. `xx`, `xy`, `yy` [m^2]; a covariance with
+/// a negative eigenvalue has a diameter of NaN, which is not drawn.
 Ellipse two_sigma_ellipse(double x, double y, double xx, double xy, double yy);
 
 /// The map of one cell in one run, as far as the file holds it: at every scan, or the final one.

@@ -166,7 +166,7 @@ InnovationSums::InnovationSums(std::size_t scans)
 
 void InnovationSums::add(std::span<const double> nis, std::span<const std::uint32_t> dof) {
   bool has_any = false;
-  // Backwards, so that earlier scans lie behind, and with zeros where there is none.
+  // The last scan stands first, so that earlier ones follow it; where there is none stands zero.
   deviations_.assign(nis.size() + kLagsTogether, 0.0);
   is_there_.assign(deviations_.size(), 0.0);
   for (std::size_t s = 0; s < nis.size(); ++s) {

@@ -228,7 +228,8 @@ double LineageWalker::family_variance(const RunRows& rows, std::size_t s) {
 }
 
 /// Walks from resampling to resampling; between them everyone is their own parent.
-void LineageWalker::walk_from(std::size_t s, const RunRows& rows, std::span<const double> times,
+void LineageWalker::walk_from(std::size_t s, const RunRows& rows,
+                              std::span<const std::size_t> resampled, std::span<const double> times,
                               Sums& sums) {
   const std::size_t particles = ancestor_.size();
   bool is_before_family_lag = !rows.particle_pose.empty();
@@ -243,7 +244,7 @@ void LineageWalker::walk_from(std::size_t s, const RunRows& rows, std::span<cons
     is_before_family_lag = false;
     if (set_.size() > 1) sums.variance.add(family_variance(rows, s));
   };
-  for (std::size_t next = resampled_[s]; next > 0 && set_.size() > 1;) {
+  for (std::size_t next = resampled[s]; next > 0 && set_.size() > 1;) {
     const std::size_t scan = next - 1;
     count_until(times[s] - times[scan] + kSameTime);
     const std::span parents(rows.ancestor.data() + particles * scan, particles);
@@ -251,7 +252,7 @@ void LineageWalker::walk_from(std::size_t s, const RunRows& rows, std::span<cons
     if (is_before_family_lag) {
       for (std::uint32_t& ancestor : ancestor_) ancestor = parents[ancestor];
     }
-    next = scan > 0 ? resampled_[scan - 1] : 0;
+    next = scan > 0 ? resampled[scan - 1] : 0;
     if (set_.size() > 1) continue;
     sums.coalescence.add(times[s] - (scan == 0 ? 0.0 : times[scan - 1]) + kSameTime);
   }
@@ -264,11 +265,10 @@ Lineages LineageWalker::walk(const RunRows& rows, std::span<const std::size_t> r
                              std::span<const double> times,
                              std::span<const double> squared_position) {
   ancestor_.resize(rows.ancestor.size() / times.size());
-  resampled_ = resampled;
   Sums sums;
   const std::size_t every = (times.size() + kMostScansOfLineages - 1) / kMostScansOfLineages;
   for (std::size_t s = every - 1; s < times.size(); s += every) {
-    walk_from(s, rows, times, sums);
+    walk_from(s, rows, resampled, times, sums);
     if (!squared_position.empty()) sums.squared_error.add(squared_position[s]);
   }
   Lineages lineages;

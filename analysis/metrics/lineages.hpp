@@ -86,11 +86,11 @@ class LineageWalker {
 
  private:
   struct Sums;
-  void walk_from(std::size_t s, const RunRows& rows, std::span<const double> times, Sums& sums);
+  void walk_from(std::size_t s, const RunRows& rows, std::span<const std::size_t> resampled,
+                 std::span<const double> times, Sums& sums);
   double family_variance(const RunRows& rows, std::size_t s);
 
   AncestorSet set_;
-  std::span<const std::size_t> resampled_;
   std::vector<std::uint32_t> ancestor_;  ///< {particle} of the scan where the walk began
   std::vector<double> families_;         ///< {ancestor, 2} weighted deviation of its descendants
 };
@@ -146,7 +146,7 @@ class DiversityCounter {
   /// [s] of the scans.
   const Diversity& count(std::span<const std::uint32_t> ancestor, std::size_t particles,
                          std::span<const double> times);
-  /// Those of the same run, by find_resamplings().
+  /// find_resamplings() of the run that was counted last.
   std::span<const std::size_t> resampled() const { return resampled_; }
 
  private:

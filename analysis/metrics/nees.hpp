@@ -88,14 +88,14 @@ std::size_t whiten(const Eigen::VectorXd& error, const Eigen::MatrixXd& covarian
                    const Eigen::VectorXd& least_deviation, std::span<double> whitened_error,
                    std::span<double> standardised);
 
-/// A pose error in units of its covariance by whiten().
+/// A pose error in units of its covariance P, as whiten() computes it.
 struct WhitenedPose {
   Eigen::Vector3d whitened, standardised;
   std::size_t rank = 0;                                           ///< components that are not NaN
   double determinant = std::numeric_limits<double>::quiet_NaN();  ///< of P; NaN if it is singular
 };
 
-/// Writes `pose`; components count as exact under the conditions of nees().
+/// Fills `pose`. Components count as exact under the conditions of nees().
 void whiten_pose(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance,
                  WhitenedPose& pose);
 

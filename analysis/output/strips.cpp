@@ -55,7 +55,7 @@ std::vector<Stretch> columns_of(std::size_t places) {
   return stretches;
 }
 
-/// The begins of columns: the first at `from`, others midway between two places.
+/// Left edges of the columns: the first is `from`, the others lie midway between two places.
 std::vector<double> begins_of(const std::vector<Stretch>& columns,
                               const std::vector<double>& places, double from) {
   std::vector<double> begins = {from};

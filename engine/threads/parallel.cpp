@@ -37,8 +37,8 @@ class Bodies {
       exception_ = std::current_exception();
     }
   }
-  /// Once all calls have returned. The lock orders this thread behind the one that threw, for a
-  /// thread sanitizer too, which does not see how TBB and OpenMP join their threads.
+  /// To be called when all calls have returned. The lock is for the thread sanitizer, which does
+  /// not see that TBB and OpenMP join their threads.
   void rethrow() {
     const std::lock_guard lock(mutex_);
     if (exception_) std::rethrow_exception(exception_);

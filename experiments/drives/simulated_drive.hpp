@@ -21,7 +21,7 @@
 
 namespace montecarta::experiments {
 
-/// The place in which the noise of the controls acts (EQUATIONS 1).
+/// The noise of the controls acts on the filter's input or on the truth (EQUATIONS 1).
 enum class NoiseMode {
   measured_control,  ///< the truth follows the nominal control; the filter is given a noisy one
   matched,           ///< the truth follows a noisy control; the filter is given the nominal one

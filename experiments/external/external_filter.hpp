@@ -77,8 +77,8 @@ class ExternalFilter final : public SlamFilter {
   std::unique_ptr<Session> session_;
 };
 
-/// The permission of a cell to start the program that it names. The user decides this when running
-/// a study; a study file cannot.
+/// Permission to start the programs that cells name. The user gives it when running a study; a
+/// study file cannot.
 enum class ExternalPrograms { refused, allowed };
 
 /// Name of the option that allows it, without dashes.

@@ -72,7 +72,7 @@ class SeveralDrives final : public DriveSource {
   Itinerary itinerary_;  ///< of the drive with the most scans, without references
 };
 
-/// The presence of the identities of detections in a log.
+/// A log either tells the identities of its detections or withholds them.
 enum class Identities { told, withheld };
 
 /// Converts a drive with known truth to a log. RecordedDrive makes the same steps, controls and

@@ -166,8 +166,7 @@ IniEntry override_entry(const std::string& text) {
   if (equals == std::string::npos || dot == std::string::npos || dot > equals) {
     throw StudyError("--set " + text +
                      ": not understood (the form is section.key=value): write e.g. --set "
-                     "study.runs=10; cells are "
-                     "changed in the study file");
+                     "study.runs=10, and change cells in the study file");
   }
   if (text.find_first_of("#\n\r") != std::string::npos) {
     throw StudyError("--set " + text +

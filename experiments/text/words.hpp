@@ -34,8 +34,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b);
 /// "did you mean X?" for the known spelling nearest to `word`, else "known: a, b, c".
 std::string nearest_spelling(std::string_view word, std::span<const std::string> known);
 
-/// The item of a container with `name` as its `name_of`. Throws StudyError, worded `problem` and
-/// the nearest name as a remedy, if there is none.
+/// The item of a container that name_of() calls `name`. If there is none, throws StudyError with
+/// the text `problem` and the nearest name as a remedy.
 template <class Items, class NameOf>
 auto& item_called(std::string_view name, Items&& items, const NameOf& name_of,
                   const std::string& problem) {

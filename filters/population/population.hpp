@@ -133,7 +133,8 @@ class CloudMoments {
     c_ = {cc - c * c, cs - c * s}, s_ = {cs - c * s, ss - s * s};
   }
 
-  /// The moments after the cloud moved by `increment`, whose covariance each particle then has.
+  /// Mean and covariance after `increment` moved every particle and gave it a covariance of its
+  /// own.
   PoseMoments moved_by(const MotionIncrement& increment) const;
 
  private:

@@ -100,7 +100,7 @@ TEST(Strips, AreDrawnWithNamesNotesAndKey) {
   EXPECT_GT(std::filesystem::file_size(folder / "figures/strips.pdf"), 1000u);
 }
 
-/// The begin of the grey of the key, as a share of the width.
+/// Left edge of the grey field of the key, as a share of the width.
 double grey_of_key(const Chart& chart) {
   const std::string commands = gnuplot_chart(chart, 900).commands;
   const std::size_t end = commands.find("'#e9e9e9'");
