@@ -156,6 +156,37 @@ std::string pairs_text(const CellComparison& row) {
   return text;
 }
 
+/// "nees higher (277 times)".
+std::string finding_of(const CellComparison& row, double level) {
+  const std::string finding = std::string(row.score->name) + ' ' + row.verdict(level);
+  return std::isnan(row.ratio) ? finding : finding + " (" + readable(row.ratio) + " times)";
+}
+
+/// "fast against ekf: nees higher (277 times); undecided: position_rmse.", of the rows of one cell.
+std::string sentence_of(std::span<const CellComparison> rows, const Comparisons& all) {
+  std::string decided, undecided;
+  for (const CellComparison& row : rows) {
+    const bool is_decided = row.verdict(all.level) != "undecided";
+    std::string& list = is_decided ? decided : undecided;
+    if (!list.empty()) list += ", ";
+    list += is_decided ? finding_of(row, all.level) : std::string(row.score->name);
+  }
+  if (!undecided.empty())
+    undecided = (decided.empty() ? "undecided: " : "; undecided: ") + undecided;
+  return rows.front().cell + " against " + all.baseline + ": " + decided + undecided + ".";
+}
+
+/// Says for each cell that failed how its failures count.
+void add_failures(const StudyAnalysis& study, std::vector<std::string>& notes) {
+  for (const CellAnalysis& cell : study.cells) {
+    if (cell.failures.empty()) continue;
+    notes.push_back(prose("comparison", "failures",
+                          {{"cell", cell.label},
+                           {"failed", std::to_string(cell.failures.size())},
+                           {"complete", std::to_string(cell.complete)}}));
+  }
+}
+
 std::vector<TextTable::Entry> row_of(const CellComparison& row, double level) {
   return {{"what", heading(row.score->name, row.score->units), Align::left},
           {"cell", row.cell, Align::left},
@@ -269,6 +300,32 @@ void write_comparison_csv(const StudyComparison& comparison,
   write_csv(wins, directory / kWins);
 }
 
+std::vector<std::string> comparison_sentences(const Comparisons& comparisons) {
+  std::vector<CellComparison> rows = comparisons.rows;  // by cell, in the order of the first score
+  std::vector<std::string> sentences;
+  for (auto first = rows.begin(); first != rows.end();) {
+    const auto next = std::stable_partition(
+        first, rows.end(), [cell = first->cell](const auto& row) { return row.cell == cell; });
+    sentences.push_back(sentence_of({first, next}, comparisons));
+    first = next;
+  }
+  return sentences;
+}
+
+TextTable difference_table(const Comparisons& comparisons) {
+  TextTable table{.keys = 2};
+  const std::string difference = "difference [" + level_text(comparisons.level) + "]";
+  for (const CellComparison& row : comparisons.rows) {
+    table.add({{"what", heading(row.score->name, row.score->units), Align::left},
+               {"cell", row.cell, Align::left},
+               {difference, row.has_heavy_tail ? readable(row.difference) + " (heavy tail)"
+                                               : with_interval(row.difference, row.interval)},
+               {"ratio", readable(row.ratio)},
+               {"runs won", percent(row.wins.share())}});
+  }
+  return table;
+}
+
 TextTable comparison_table(const Comparisons& comparisons) {
   TextTable table{.keys = 2};
   for (const CellComparison& row : comparisons.rows) table.add(row_of(row, comparisons.level));
@@ -290,6 +347,15 @@ TextTable win_table(const WinMatrix& matrix, double level) {
   return table;
 }
 
+std::vector<std::string> difference_notes(const StudyAnalysis& study,
+                                          const Comparisons& comparisons) {
+  std::vector<std::string> notes =
+      paragraphs("comparison", "differences",
+                 {{"baseline", comparisons.baseline}, {"level", level_text(comparisons.level)}});
+  add_failures(study, notes);
+  return notes;
+}
+
 std::vector<std::string> comparison_notes(const StudyAnalysis& study,
                                           const Comparisons& comparisons) {
   std::vector<std::string> notes =
@@ -298,13 +364,7 @@ std::vector<std::string> comparison_notes(const StudyAnalysis& study,
                   {"level", level_text(comparisons.level)},
                   {"tests", std::to_string(2 * comparisons.rows.size())},
                   {"error", level_text(1.0 - comparisons.level)}});
-  for (const CellAnalysis& cell : study.cells) {
-    if (cell.failures.empty()) continue;
-    notes.push_back(prose("comparison", "failures",
-                          {{"cell", cell.label},
-                           {"failed", std::to_string(cell.failures.size())},
-                           {"complete", std::to_string(cell.complete)}}));
-  }
+  add_failures(study, notes);
   return notes;
 }
 

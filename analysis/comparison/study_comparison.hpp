@@ -98,12 +98,21 @@ std::vector<std::string> comparison_csv_names();
 void write_comparison_csv(const StudyComparison& comparison,
                           const std::filesystem::path& directory);
 
-/// One row for each cell and score: the difference from the baseline and its tests.
+/// One sentence for each cell: by which scores it differs from the baseline, and by which it is
+/// undecided.
+std::vector<std::string> comparison_sentences(const Comparisons& comparisons);
+
+/// One row for each cell and score: the difference from the baseline with its interval.
+TextTable difference_table(const Comparisons& comparisons);
+/// The same rows with the tests of each difference.
 TextTable comparison_table(const Comparisons& comparisons);
 /// One row and one column for each cell: the share of runs in which the row beats the column.
 TextTable win_table(const WinMatrix& matrix, double level);
 
-/// Notes on the table, for readers who do not know p-values.
+/// How to read difference_table(), in short.
+std::vector<std::string> difference_notes(const StudyAnalysis& study,
+                                          const Comparisons& comparisons);
+/// Notes on comparison_table(), for readers who do not know p-values.
 std::vector<std::string> comparison_notes(const StudyAnalysis& study,
                                           const Comparisons& comparisons);
 std::string win_note(double level);

@@ -49,22 +49,43 @@ std::string baseline_of(const Arguments& arguments, const ResultFile& file) {
                          " (it must be one of them)");
 }
 
-void print(const StudyAnalysis& study, const StudyComparison& comparison) {
-  std::ostream& out = std::cout;
+void print_notes(const std::vector<std::string>& notes) {
+  for (const std::string& note : notes) std::cout << engine::wrapped(note, engine::output_width());
+}
+
+void print_differences(const StudyAnalysis& study, const Comparisons& comparisons) {
+  print_table(std::cout, difference_table(comparisons), engine::output_width());
+  std::cout << '\n';
+  print_notes(difference_notes(study, comparisons));
+}
+
+/// Prints the tests of each difference, and every cell against every other.
+void print_tests(const StudyAnalysis& study, const StudyComparison& comparison) {
+  const Comparisons& comparisons = comparison.comparisons;
   const std::size_t width = engine::output_width();
-  const double level = comparison.comparisons.level;
-  print_sentences(out, study, width);
-  print_table(out, comparison_table(comparison.comparisons), width);
-  out << '\n';
-  for (const std::string& note : comparison_notes(study, comparison.comparisons)) {
-    out << engine::wrapped(note, width);
-  }
+  print_table(std::cout, comparison_table(comparisons), width);
+  std::cout << '\n';
+  print_notes(comparison_notes(study, comparisons));
   for (const WinMatrix& matrix : comparison.matrices) {
-    out << '\n';
-    print_table(out, win_table(matrix, level), width);
+    std::cout << '\n';
+    print_table(std::cout, win_table(matrix, comparisons.level), width);
   }
-  out << '\n';
-  if (!comparison.matrices.empty()) out << engine::wrapped(win_note(level), width);
+  std::cout << '\n';
+  if (!comparison.matrices.empty()) print_notes({win_note(comparisons.level)});
+}
+
+void print(const StudyAnalysis& study, const StudyComparison& comparison, bool with_tests) {
+  const std::size_t width = engine::output_width();
+  print_sentences(std::cout, study, width);
+  for (const std::string& sentence : comparison_sentences(comparison.comparisons)) {
+    std::cout << engine::wrapped(sentence, width, 2);
+  }
+  std::cout << '\n';
+  if (with_tests) {
+    print_tests(study, comparison);
+  } else {
+    print_differences(study, comparison.comparisons);
+  }
 }
 
 }  // namespace
@@ -79,7 +100,7 @@ int compare_command(const Arguments& arguments) {
   const StudyAnalysis study = analyze(file, level, parallel_of(arguments),
                                       arguments.number("within", kLeastMargin, kMostMargin));
   const StudyComparison comparison = compare_study(study, baseline, scores);
-  print(study, comparison);
+  print(study, comparison, arguments.has("all"));
   if (directory) write_comparison_csv(comparison, *directory);
   return kDone;
 }

@@ -171,6 +171,24 @@ TEST(CompareCells, SaysWhereTheMeanIsOnTheOtherSideOfMostRuns) {
   EXPECT_EQ(found.rows.at(1).verdict(0.95), "better in most runs");
 }
 
+// One sentence for each cell, which names each score once.
+TEST(CompareCells, SayInOneSentenceWhatIsDecidedAndWhatIsNot) {
+  using Scores = std::vector<ScoreTable::Value>;
+  const auto cell = [](const char* label, double nees) {
+    return scored_cell(label, [&](double value) {
+      return Scores{{"nees", nees + value}, {"position_rmse", 1.0}};
+    });
+  };
+  const Comparisons found =
+      compare_cells(compared_study({cell("base", 5.0), cell("bold", 50.0), cell("twin", 5.0)}),
+                    "base", scores({"position_rmse", "nees"}));
+  EXPECT_THAT(comparison_sentences(found),
+              ElementsAre("bold against base: nees higher (9.83 times); undecided: position_rmse.",
+                          "twin against base: undecided: position_rmse, nees."));
+  EXPECT_THAT(difference_table(found).rows[0],
+              ElementsAre("position_rmse [m]", "bold", "0.00", "1.00", "0.0 %"));
+}
+
 // Two cells without difference, in nine of ten studies at least no false word at 10 %.
 TEST(CompareCells, SlowSaysNothingFalseMoreOftenThanItsLevel) {
   const std::vector<const Score*> chosen = scores({"position_rmse"});

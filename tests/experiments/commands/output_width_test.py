@@ -117,6 +117,7 @@ def check_result(output):
     output.expect_fit("analyze", "out.h5")
     output.expect_fit("analyze", "out.h5", "--all")
     output.expect_fit("compare", "out.h5", "--baseline", "ekf_slam")
+    output.expect_fit("compare", "out.h5", "--baseline", "ekf_slam", "--all")
     output.expect_fit("info", "out.h5")
     output.expect_fit("status", "out.h5")
     output.expect_fit("verify", "out.h5", "--sample", "2")
