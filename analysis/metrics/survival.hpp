@@ -25,7 +25,7 @@ struct Survival {
   std::vector<double> share;       ///< {scan} of the runs
   std::vector<Interval> interval;  ///< {scan} of the share (Wilson 1927)
   double median = 0.0;             ///< [s] when half of them are lost; infinity: never
-  Interval median_interval = {};   ///< [s] from order statistics: no distribution is assumed
+  Interval median_interval = {};   ///< [s] of the median, by median_interval(); NaN of few runs
 };
 
 /// `ends` [s] of the runs, infinity where a run lasts; `times` [s] of the scans.

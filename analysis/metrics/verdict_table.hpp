@@ -57,15 +57,15 @@ std::string ratio_text(const CellAnalysis& cell);
 /// The mean of a score over the complete runs of a cell, in words.
 struct MeanText {
   std::string mean;    ///< with its interval, or alone if the scores have a heavy tail
-  std::string median;  ///< with its interval if the scores have a heavy tail, else empty
+  std::string median;  ///< with its median_interval() if the scores have a heavy tail, else empty
 
   /// "0.29 [0.22, 0.37]", "3.1 (heavy tail), median 0.4 [0.3, 0.6]"
   std::string text() const;
 };
 
 /// The mean with the interval of the cell. If the values have a heavy tail, no interval of the mean
-/// is valid: the median then follows with an interval at `level`. All numbers are multiplied by
-/// `factor`.
+/// is valid: the median then follows, with an interval at `level` unless there are too few runs
+/// for one. All numbers are multiplied by `factor`.
 MeanText score_text(const CellAnalysis& cell, std::string_view score, double level,
                     double factor = 1.0);
 

@@ -48,14 +48,14 @@ double median_of(std::vector<double> values) {
 Interval median_interval(const std::vector<double>& sorted, double level) {
   const boost::math::binomial below(static_cast<double>(sorted.size()), 0.5);
   double outside = 0.0;
-  std::size_t rank = 0;  // how many values are cut off at either end
+  std::size_t rank = 0;  // of the value at the lower end, counted from 1; 0: there is none
   while (rank < sorted.size() / 2) {
     outside += 2.0 * boost::math::pdf(below, static_cast<double>(rank));
     if (outside > 1.0 - level) break;
     ++rank;
   }
-  const std::size_t first = rank == 0 ? 0 : rank - 1;
-  return {sorted[first], sorted[sorted.size() - 1 - first]};
+  if (rank == 0) return {kNaN, kNaN};  // even the least and the greatest value hold it too rarely
+  return {sorted[rank - 1], sorted[sorted.size() - rank]};
 }
 
 Spread spread_of(std::span<const double> values) {

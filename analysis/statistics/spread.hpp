@@ -101,7 +101,9 @@ struct Spread {
 double median_of(std::vector<double> values);
 
 /// Interval between two of the `sorted` values that holds the median over infinitely many with a
-/// probability of at least `level`, by order statistics: no distribution is assumed.
+/// probability of at least `level`, by order statistics: no distribution is assumed. NaN if there
+/// are too few values for that: all n of them hold it with the probability 1 - 2^(1 - n), which is
+/// below 95 % for fewer than six values.
 Interval median_interval(const std::vector<double>& sorted, double level);
 
 /// Spread of `values` in the order of the runs. NaN, except their number, if one of them is NaN.

@@ -258,9 +258,10 @@ TEST(Survival, HoldsTheMedianBetweenOrderStatistics) {
 }
 
 TEST(Survival, SaysNeverWhereMostRunsLast) {
-  const std::vector<double> ends = {1.0, kNever, kNever, kNever, kNever};
+  const std::vector<double> ends = {1.0, kNever, kNever, kNever, kNever, kNever};
   const Survival found = survival_of(ends, kTimes, 0.95);
   EXPECT_EQ(found.median, kNever);
+  EXPECT_EQ(found.median_interval.lower, 1.0);
   EXPECT_EQ(found.median_interval.upper, kNever);
   EXPECT_EQ(survival_of({}, kTimes, 0.95).runs, 0u);
 }

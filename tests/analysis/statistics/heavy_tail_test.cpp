@@ -6,6 +6,7 @@
 #include "analysis/statistics/spread.hpp"
 #include "engine/random/stream.hpp"
 
+#include <boost/math/distributions/chi_squared.hpp>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -92,6 +93,34 @@ TEST(SlowHeavyTailMedian, HasAnIntervalThatHolds) {
     }
     EXPECT_NEAR(held, 0.955, 0.025) << n;
   }
+}
+
+/// Expects intervals of the median of n values that hold it at least as often as they say, less
+/// four standard errors, and none where all n values together would hold it too rarely.
+template <class Sample>
+void expect_median_intervals(const Sample& sample, double median) {
+  for (std::size_t n = 0; n <= 12; ++n) {
+    for (const double level : {0.6, 0.9, 0.95, 0.99, 0.999}) {
+      const bool has_interval = 1.0 - std::exp2(1.0 - static_cast<double>(n)) >= level;
+      double held = 0.0;
+      for (std::uint64_t study = 0; study < kTailStudies; ++study) {
+        std::vector<double> values = sample(study, n);
+        std::ranges::sort(values);
+        const auto [lower, upper] = median_interval(values, level);
+        ASSERT_EQ(std::isnan(lower), !has_interval) << n << " values at " << level;
+        ASSERT_EQ(std::isnan(upper), !has_interval) << n << " values at " << level;
+        held += lower <= median && median <= upper ? 1.0 / kTailStudies : 0.0;
+      }
+      const double error = std::sqrt(level * (1.0 - level) / kTailStudies);
+      EXPECT_GT(held, has_interval ? level - 4.0 * error : -1.0) << n << " values at " << level;
+    }
+  }
+}
+
+TEST(MedianInterval, OfFewValuesHoldsTheMedianOrIsAbsent) {
+  expect_median_intervals([](auto study, auto n) { return log_normals(study, n, 1.5); }, 1.0);
+  const double median = boost::math::median(boost::math::chi_squared(3.0));
+  expect_median_intervals([](auto study, auto n) { return chi_squares(study, n); }, median);
 }
 
 constexpr std::uint64_t kStoppedStudies = 2000;
