@@ -12,47 +12,41 @@
 
 namespace montecarta::analysis {
 
-// Each is defined in a file of metrics/.
-Metric errors_metric();
-Metric nees_metric();
-Metric verdict_metric();
-Metric imported_metric();
-Metric convention_hints_metric();
-Metric map_size_metric();
-Metric particles_metric();
-Metric lineages_metric();
-Metric association_metric();
-Metric references_metric();
-Metric drive_metric();
-Metric beacons_metric();
-Metric bound_metric();
-Metric map_metric();
-Metric joint_nees_metric();
-Metric observability_metric();
-Metric error_anatomy_metric();
-Metric survival_metric();
-Metric innovations_metric();
-Metric diversity_metric();
-Metric calibration_metric();
-Metric mismatch_metric();
-Metric cost_metric();
-Metric smoother_metric();
-Metric proper_scores_metric();
+// The metrics, in the order of their numbers in files; Metric NAME_metric() is defined in metrics/.
+// A new one is one line here.
+#define MONTECARTA_METRICS(METRIC) \
+  METRIC(errors)                   \
+  METRIC(nees)                     \
+  METRIC(verdict)                  \
+  METRIC(imported)                 \
+  METRIC(map_size)                 \
+  METRIC(particles)                \
+  METRIC(lineages)                 \
+  METRIC(association)              \
+  METRIC(references)               \
+  METRIC(drive)                    \
+  METRIC(beacons)                  \
+  METRIC(bound)                    \
+  METRIC(map)                      \
+  METRIC(joint_nees)               \
+  METRIC(error_anatomy)            \
+  METRIC(survival)                 \
+  METRIC(innovations)              \
+  METRIC(diversity)                \
+  METRIC(calibration)              \
+  METRIC(mismatch)                 \
+  METRIC(cost)                     \
+  METRIC(convention_hints)         \
+  METRIC(smoother)                 \
+  METRIC(proper_scores)            \
+  METRIC(observability)
+
+#define MONTECARTA_DECLARED(NAME) Metric NAME##_metric();
+MONTECARTA_METRICS(MONTECARTA_DECLARED)
 
 std::span<const Metric> all_metrics() {
-  static const std::vector<Metric> all = {errors_metric(),        nees_metric(),
-                                          verdict_metric(),       imported_metric(),
-                                          map_size_metric(),      particles_metric(),
-                                          lineages_metric(),      association_metric(),
-                                          references_metric(),    drive_metric(),
-                                          beacons_metric(),       bound_metric(),
-                                          map_metric(),           joint_nees_metric(),
-                                          error_anatomy_metric(), survival_metric(),
-                                          innovations_metric(),   diversity_metric(),
-                                          calibration_metric(),   mismatch_metric(),
-                                          cost_metric(),          convention_hints_metric(),
-                                          smoother_metric(),      proper_scores_metric(),
-                                          observability_metric()};
+#define MONTECARTA_LISTED(NAME) NAME##_metric(),
+  static const std::vector<Metric> all = {MONTECARTA_METRICS(MONTECARTA_LISTED)};
   return all;
 }
 
