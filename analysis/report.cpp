@@ -56,20 +56,20 @@ Section titled(Section section) {
   return section;
 }
 
-/// Sections in the order of reading, each with its figures.
+/// Sections in the order of reading, each with its figures. Those without a place come last.
 std::vector<Section> arranged(std::vector<Section> sections, std::vector<Figure> figures) {
+  std::vector<Place> places = reading_order();
+  for (const Section& section : sections) places.push_back({section.name});
+  for (const Figure& figure : figures) places.push_back({figure.name});
   std::vector<Section> page;
-  for (const Place& place : reading_order()) {
+  for (Place& place : places) {
     Section section = take(place.section, sections).value_or(Section{place.section, ""});
     section.shown = place.shown;
+    place.figures.push_back(place.section);
     for (const std::string& name : place.figures) {
       if (auto figure = take(name, figures)) section.figures.push_back(std::move(*figure));
     }
     page.push_back(titled(std::move(section)));
-  }
-  std::ranges::move(sections, std::back_inserter(page));
-  for (const Figure& figure : figures) {
-    page.push_back(titled({.name = figure.name, .title = "", .figures = {figure}}));
   }
   return page;
 }

@@ -102,15 +102,15 @@ struct Section {
 /// the caller sets it, the summary.
 Section section_of(std::string_view name, const Values& values = {});
 
-/// The place of a section, with the figures of its subject.
+/// The place of a section with its figures.
 struct Place {
   std::string section;
-  std::vector<std::string> figures = {};
+  std::vector<std::string> figures = {};          ///< before the one that is called as the section
   Section::Shown shown = Section::Shown::folded;  ///< on the page
 };
 
-/// The order of the sections on the page and on a terminal. Sections without a place come
-/// behind them.
+/// The order of the sections on the page and on a terminal. Sections and figures without a place
+/// come behind them.
 const std::vector<Place>& reading_order();
 
 }  // namespace montecarta::analysis
