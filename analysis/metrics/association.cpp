@@ -54,7 +54,7 @@ std::vector<TextTable::Entry> association_row(const CellAnalysis& cell) {
 std::vector<Section> association_sections(const StudyAnalysis& study) {
   return table_section(
       section_of("association", {{"wrong", range_over_cells(study, wrong_share, percent)}}),
-      "association", cell_table(study, association_row));
+      cell_table(study, association_row));
 }
 
 }  // namespace

@@ -75,10 +75,9 @@ TextTable cell_table(const StudyAnalysis& study, const CellEntries& entries_of) 
   return table;
 }
 
-std::vector<Section> table_section(Section section, const std::string& table_name,
-                                   const TextTable& table, const Values& notes) {
+std::vector<Section> table_section(Section section, const TextTable& table, const Values& notes) {
   if (table.rows.empty()) return {};
-  section.add(table_name, table);
+  section.add(section.name, table);
   section.add_notes("notes", notes);
   return {section};
 }

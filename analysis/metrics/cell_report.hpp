@@ -29,9 +29,10 @@ using CellEntries = std::function<std::vector<TextTable::Entry>(const CellAnalys
 /// One row for each cell that has entries.
 TextTable cell_table(const StudyAnalysis& study, const CellEntries& entries_of);
 
-/// A section with a table and the notes of its prose; none if the table has no rows.
-std::vector<Section> table_section(Section section, const std::string& table_name,
-                                   const TextTable& table, const Values& notes = {});
+/// A section with a table of the same name and the notes of its prose; none if the table has no
+/// rows.
+std::vector<Section> table_section(Section section, const TextTable& table,
+                                   const Values& notes = {});
 
 /// The label of a cell without its number of particles: "fastslam2_gps" of "fastslam2_m100_gps".
 std::string label_without_particles(const CellAnalysis& cell);

@@ -138,7 +138,7 @@ std::vector<Section> error_anatomy_sections(const StudyAnalysis& study) {
     return anatomy == nullptr ? kNaN : anatomy->mean_bias_share;
   };
   return table_section(
-      section_of("error_anatomy", {{"bias", range_over_cells(study, bias, percent)}}), "why",
+      section_of("error_anatomy", {{"bias", range_over_cells(study, bias, percent)}}),
       cell_table(study, why_row));
 }
 

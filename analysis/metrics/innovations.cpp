@@ -151,8 +151,7 @@ std::vector<Section> innovations_sections(const StudyAnalysis& study) {
     return innovation_row(cell, study.level);
   };
   return table_section(section_of("innovations", {{"nis", range_over_cells(study, nis)}}),
-                       "innovation", cell_table(study, row),
-                       {{"lags", std::to_string(kInnovationLags)}});
+                       cell_table(study, row), {{"lags", std::to_string(kInnovationLags)}});
 }
 
 std::vector<Figure> innovations_figures(const StudyAnalysis& study) {

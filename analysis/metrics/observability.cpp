@@ -43,7 +43,7 @@ std::vector<TextTable::Entry> observability_row(const CellAnalysis& cell) {
 std::vector<Section> observability_sections(const StudyAnalysis& study) {
   return table_section(
       section_of("observability", {{"information", range_over_cells(study, information_of)}}),
-      "observability", cell_table(study, observability_row));
+      cell_table(study, observability_row));
 }
 
 std::vector<Figure> observability_figures(const StudyAnalysis& study) {

@@ -54,7 +54,7 @@ std::vector<Section> proper_scores_sections(const StudyAnalysis& study) {
   };
   return table_section(
       section_of("proper_scores", {{"scores", range_over_cells(study, log_score)}}),
-      "proper_scores", cell_table(study, proper_scores_row));
+      cell_table(study, proper_scores_row));
 }
 
 }  // namespace

@@ -80,7 +80,7 @@ std::vector<Section> smoother_sections(const StudyAnalysis& study) {
   return table_section(
       section_of("smoother", {{"smoother", smoother->label},
                               {"efficiency", range_over_cells(study, efficiency)}}),
-      "smoother", cell_table(study, row), {{"smoother", smoother->label}});
+      cell_table(study, row), {{"smoother", smoother->label}});
 }
 
 }  // namespace

@@ -207,7 +207,7 @@ std::vector<Section> verdict_sections(const StudyAnalysis& study) {
   Section section = section_of(
       "families", {{"rejected", std::to_string(rejected)}, {"tests", std::to_string(tests)}});
   section.is_for_terminal = false;
-  return table_section(section, "families", family_table(study));
+  return table_section(section, family_table(study));
 }
 
 /// One row for each member of each family; of scans too.

@@ -50,9 +50,8 @@ void print_table(std::ostream& out, const TextTable& table, std::size_t width);
 struct Section {
   enum class Shown { folded, open };
 
-  /// Also written as tables/<name>.tex.
   struct Table {
-    std::string name;
+    std::string name;  ///< `analyze --table NAME` prints it, a report writes it to tables/NAME.tex
     TextTable table;
   };
   /// Notes for readers who are new to such a table.
@@ -70,7 +69,7 @@ struct Section {
 
   using Block = std::variant<Table, Note, Lead, Html>;
 
-  std::string name;   ///< its place in the order of reading
+  std::string name;   ///< of its file of prose and of its place in reading_order()
   std::string title;  ///< a heading; empty: none
   std::vector<Block> blocks = {};
   bool is_for_terminal = true;       ///< else of the page alone
