@@ -11,7 +11,9 @@
 namespace montecarta::analysis {
 namespace {
 
-bool is_nan(double value) { return std::isnan(value); }
+bool any_is_nan(std::span<const double> values) {
+  return std::ranges::any_of(values, [](double value) { return std::isnan(value); });
+}
 
 // Simulated so that of each distribution of heavy_tail_test.cpp at most 7 % of all samples are not
 // said to have a heavy tail and have an interval that misses the mean.
@@ -38,7 +40,7 @@ double lopsidedness(std::vector<double> values) {
 }  // namespace
 
 double median_of(std::vector<double> values) {
-  if (values.empty() || std::ranges::any_of(values, is_nan)) return Spread{}.median;
+  if (values.empty() || any_is_nan(values)) return Spread{}.median;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::ranges::nth_element(values, middle);
   if (values.size() % 2 == 1) return *middle;
@@ -63,7 +65,7 @@ Spread spread_of(std::span<const double> values) {
   SummaryOf sums;
   for (const double value : values) sums.add(value);
   spread.summary = sums.result();
-  if (values.empty() || std::ranges::any_of(values, is_nan)) return spread;
+  if (values.empty() || any_is_nan(values)) return spread;
   spread.median = median_of({values.begin(), values.end()});
   const auto [least, greatest] = std::ranges::minmax(values);
   spread.least = least;

@@ -17,9 +17,9 @@ namespace montecarta::analysis {
 namespace {
 
 /// Adds up runs that are given as plain rows.
-class Sums {
+class RowSums {
  public:
-  explicit Sums(std::vector<double> times) : times_(std::move(times)) {}
+  explicit RowSums(std::vector<double> times) : times_(std::move(times)) {}
 
   void add(const RunRows& rows, std::size_t particles = 0) {
     run_.rows = rows;
@@ -40,7 +40,7 @@ class Sums {
 };
 
 CellAnalysis analyze_runs(const SyntheticStudy& study, std::uint64_t runs) {
-  Sums sums(study.times());
+  RowSums sums(study.times());
   for (std::uint64_t run = 0; run < runs; ++run) sums.add(study.run(run));
   return sums.result();
 }
@@ -125,7 +125,7 @@ TEST(CellSums, WrapsTheHeading) {
 }
 
 TEST(CellSums, KnowsAPairOfRunsByHand) {
-  Sums sums({0.2, 0.4});
+  RowSums sums({0.2, 0.4});
   for (const double error : {1.0, 3.0}) {
     RunRows rows;
     rows.truth = {error, 0.0, 0.0, 0.0, error, 0.1};
@@ -149,7 +149,7 @@ TEST(CellSums, KnowsAPairOfRunsByHand) {
 
 TEST(CellSums, LetsTheMixtureLeadAndKeepsTheSpread) {
   const SyntheticStudy study;
-  Sums sums(study.times());
+  RowSums sums(study.times());
   for (std::uint64_t run = 0; run < 30; ++run) {
     RunRows rows = study.run(run);
     rows.mixture = rows.spread;
@@ -167,7 +167,7 @@ TEST(CellSums, LetsTheMixtureLeadAndKeepsTheSpread) {
 TEST(CellSums, LeavesOutAndCountsARunWithoutAJudgedScan) {
   SyntheticStudy study;
   study.scans = 30;
-  Sums sums(study.times()), without(study.times());
+  RowSums sums(study.times()), without(study.times());
   for (std::uint64_t run = 0; run < 12; ++run) {
     RunRows rows = study.run(run);
     if (run != 2) without.add(rows);
@@ -196,7 +196,7 @@ TEST(CellSums, LeavesOutAndCountsARunWithoutAJudgedScan) {
 TEST(CellSums, CountsWhatIsSingularOrUnusable) {
   SyntheticStudy study;
   study.scans = 3;
-  Sums sums(study.times());
+  RowSums sums(study.times());
   for (std::uint64_t run = 0; run < 4; ++run) {
     RunRows rows = study.run(run);
     if (run == 1) {  // the heading is known, and right
@@ -217,7 +217,7 @@ TEST(CellSums, CountsWhatIsSingularOrUnusable) {
 }
 
 TEST(CellSums, SummarisesParticles) {
-  Sums sums({0.2, 0.4});
+  RowSums sums({0.2, 0.4});
   RunRows rows;
   rows.truth.assign(6, 0.0);
   rows.spread.mean.assign(6, 0.0);
@@ -233,13 +233,13 @@ TEST(CellSums, SummarisesParticles) {
 }
 
 TEST(CellSums, SumsAssociationsOverARunAndAveragesOverRuns) {
-  Sums sums({0.2, 0.4});
+  RowSums sums({0.2, 0.4});
   RunRows rows;
   rows.truth.assign(6, 0.0);
   rows.spread.mean.assign(6, 0.0);
   sums.add(rows);
   EXPECT_TRUE(std::isnan(sums.result().over_runs("association_correct").mean));
-  Sums counted({0.2, 0.4});
+  RowSums counted({0.2, 0.4});
   for (const double wrong : {1.0, 4.0}) {
     rows.association = {{3.0, 2.5}, {wrong, 0.5}, {0.0, 0.0}, {1.0, 0.0}, {0.0, 2.0}};
     counted.add(rows);
@@ -253,7 +253,7 @@ TEST(CellSums, SumsAssociationsOverARunAndAveragesOverRuns) {
 }
 
 TEST(CellSums, AveragesTheInformationAboutTheUnobservable) {
-  Sums sums({0.2, 0.4});
+  RowSums sums({0.2, 0.4});
   RunRows rows;
   rows.truth.assign(6, 0.0);
   rows.spread.mean.assign(6, 0.0);
