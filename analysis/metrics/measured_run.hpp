@@ -123,7 +123,8 @@ struct RunCriteria {
   /// Components of the errors that are judged.
   std::vector<std::string> components = {};
   /// {run of the study} Empty if all runs process one drive. Otherwise `times` are those of the
-  /// longest drive, and references and judged_fixes those of the first.
+  /// longest drive (MeasuredRun::times has those of a run), and references and judged_fixes those
+  /// of the first. Such drives are recordings without truth: they have no errors and no NEES.
   std::vector<DriveCriteria> drives = {};
 
   /// Level of a verdict on so many runs, so that all interim analyses together have `level`.
@@ -134,6 +135,7 @@ RunCriteria criteria_of(const ResultFile& file, double level, double within = kU
 
 /// One run being read and measured while others are. Keeps its memory from run to run.
 struct MeasuredRun {
+  std::span<const double> times;  ///< [s] of its scans
   RunRows rows;
   RunReader::Scratch scratch;
   RunMetrics metrics;

@@ -37,7 +37,7 @@ class SurvivalOverRuns final : public MergedSums<SurvivalOverRuns> {
     std::vector<bool> above;
     for (const double value : nees->value[0]) above.push_back(value > run_bound_);
     const auto exit = first_lasting(above, kLastingScans);
-    run_exits_.push_back(exit ? criteria_->times[*exit] : std::numeric_limits<double>::infinity());
+    run_exits_.push_back(exit ? run.times[*exit] : std::numeric_limits<double>::infinity());
   }
   void put(CellAnalysis& cell) override {
     if (run_exits_.empty()) return;
