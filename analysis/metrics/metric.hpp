@@ -8,6 +8,7 @@
 #include "analysis/output/text_table.hpp"
 #include "analysis/statistics/merging.hpp"
 #include "analysis/statistics/sum_words.hpp"
+#include "engine/errors.hpp"
 
 #include <functional>
 #include <memory>
@@ -61,9 +62,10 @@ struct ResultNumber {
   std::string name;  ///< in files; empty: in the table alone
   std::string units;
   std::function<double(const Result&)> value;
-  std::string heading = {};                      ///< of the table; empty: in files alone
-  std::function<std::string(double)> text = {};  ///< of the table; empty: readable()
-  /// Of the value: NAME_lower and NAME_upper in files, brackets in the table.
+  std::string heading = {};  ///< of the table; empty: in files alone
+  /// Text of the value in the table; empty: readable(). Not beside an interval.
+  std::function<std::string(double)> text = {};
+  /// Of the value: NAME_lower and NAME_upper in files, and with_interval() in the table.
   std::function<Interval(const Result&)> interval = {};
 };
 
@@ -88,6 +90,7 @@ void add_entries(const std::vector<ResultNumber<Result>>& quantities, const Resu
   for (const ResultNumber<Result>& one : quantities) {
     if (one.heading.empty()) continue;
     if (one.interval) {
+      expect(!one.text, "a number with an interval has the text of with_interval()");
       row.push_back({one.heading + " [" + level_text(level) + "]",
                      with_interval(one.value(result), one.interval(result))});
     } else {
