@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Promises of the verdict, checked by simulated studies. `MONTECARTA_STUDIES=2000
-// build/analysis_tests
-// --gtest_filter='*SlowVerdict*'` prints the tables of STATISTICS 5 and 18; without the variable a
-// sample of their lines.
+// Promises of the verdict, checked by simulated studies. This prints the tables of STATISTICS 5 and
+// 18, and without the variable a sample of their lines:
+//   MONTECARTA_STUDIES=2000 build/analysis_tests --gtest_filter='*SlowVerdict*'
 #include "analysis/verdict/family.hpp"
 #include "engine/runs/monte_carlo.hpp"
 #include "tests/analysis/verdict_studies.hpp"
