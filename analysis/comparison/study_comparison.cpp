@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 namespace montecarta::analysis {
@@ -23,6 +24,27 @@ Wins wins_of(const PairedRuns& pairs, const Score& score) {
   }
   wins.p = wins.p_holm = sign_test(wins.won, wins.lost);
   return wins;
+}
+
+/// The error of which a score is the NEES; nullopt for other scores.
+std::optional<ErrorBlock> judged_block(const Score& score) {
+  const std::string_view name = score.name;
+  if (name == "nees") return ErrorBlock::pose;
+  if (name == "nees_position") return ErrorBlock::position;
+  return std::nullopt;
+}
+
+/// The name in tables, which show a NEES as its ratio to the expected one.
+std::string name_in_tables(const Score& score) {
+  const auto block = judged_block(score);
+  if (!block) return score.name;
+  return *block == ErrorBlock::pose ? "NEES ratio" : "position NEES ratio";
+}
+
+double expectation_of(const Score& score, const CellAnalysis& cell) {
+  const auto block = judged_block(score);
+  const NeesResult* nees = block ? cell.find_nees(*block, cell.leading) : nullptr;
+  return nees == nullptr ? 1.0 : static_cast<double>(nees->series.dimension);
 }
 
 CellComparison compare_pair(const CellAnalysis& cell, const CellAnalysis& baseline,
@@ -41,6 +63,7 @@ CellComparison compare_pair(const CellAnalysis& cell, const CellAnalysis& baseli
   row.interval = bootstrap_mean(differences, level);
   row.has_heavy_tail = is_heavy_tailed(differences);
   if (score.has_ratio) row.ratio = row.mean / row.baseline_mean;
+  row.expectation = expectation_of(score, cell);
   row.wins = wins_of(pairs, score);
   row.rank = signed_rank_test(differences);
   return row;
@@ -188,12 +211,14 @@ void add_failures(const StudyAnalysis& study, std::vector<std::string>& notes) {
 }
 
 std::vector<TextTable::Entry> row_of(const CellComparison& row, double level) {
-  return {{"what", heading(row.score->name, row.score->units), Align::left},
+  const Interval interval{row.interval.lower / row.expectation,
+                          row.interval.upper / row.expectation};
+  return {{"what", heading(name_in_tables(*row.score), row.score->units), Align::left},
           {"cell", row.cell, Align::left},
           {"verdict", row.verdict(level), Align::left},
-          {"difference", readable(row.difference)},
+          {"difference", readable(row.difference / row.expectation)},
           {level_text(level) + " interval",
-           row.has_heavy_tail ? "heavy tail" : interval_text(row.interval)},
+           row.has_heavy_tail ? "heavy tail" : interval_text(interval)},
           {"ratio", readable(row.ratio)},
           {"runs won", percent(row.wins.share())},
           {"p sign", readable(row.wins.p_holm, 2)},
@@ -334,7 +359,7 @@ TextTable comparison_table(const Comparisons& comparisons) {
 
 TextTable win_table(const WinMatrix& matrix, double level) {
   TextTable table;
-  table.headings = {{std::string(matrix.score->name) + ": row beats", Align::left}};
+  table.headings = {{name_in_tables(*matrix.score) + ": row beats", Align::left}};
   for (const std::string& cell : matrix.cells) table.headings.push_back({cell});
   for (std::size_t r = 0; r < matrix.cells.size(); ++r) {
     std::vector<std::string> row = {matrix.cells[r]};

@@ -40,6 +40,7 @@ struct CellComparison {
   Interval interval{};                       ///< of the difference
   bool has_heavy_tail = false;               ///< which makes that interval worthless
   double ratio = kNaN;                       ///< mean / baseline_mean; NaN if !Score::has_ratio
+  double expectation = 1.0;  ///< of a NEES, by which tables divide it; 1 for other scores
   Wins wins{};
   SignedRank rank{};         ///< of the differences
   double rank_p_holm = 1.0;  ///< adjusted for all tests of the table
@@ -102,7 +103,8 @@ void write_comparison_csv(const StudyComparison& comparison,
 /// undecided.
 std::vector<std::string> comparison_sentences(const Comparisons& comparisons);
 
-/// One row for each cell and score: the difference from the baseline with its interval.
+/// One row for each cell and score: the difference from the baseline with its interval. A NEES is
+/// shown as the NEES ratio.
 TextTable difference_table(const Comparisons& comparisons);
 /// The same rows with the tests of each difference.
 TextTable comparison_table(const Comparisons& comparisons);

@@ -140,6 +140,28 @@ TEST(CompareCells, KnowsWhichSideIsBetter) {
   EXPECT_EQ(found.rows.at(1).wins.lost, 20u);
 }
 
+TEST(CompareCells, ShowsTheNeesAsItsRatioToTheExpectedOne) {
+  using Scores = std::vector<ScoreTable::Value>;
+  const auto cell = [](const std::string& label, double nees) {
+    CellAnalysis made = scored_cell(label, [&](double value) {
+      return Scores{{"nees", nees + value}, {"position_rmse", nees + value}};
+    });
+    made.nees.push_back({.block = ErrorBlock::pose, .moments = made.leading, .series = {}});
+    made.nees.back().series.dimension = 3;
+    return made;
+  };
+  const std::vector<CellAnalysis> cells = {cell("base", 3.0), cell("off", 9.0)};
+  const Comparisons found =
+      compare_cells(compared_study(cells), "base", scores({"nees", "position_rmse"}));
+  EXPECT_NEAR(found.rows.at(0).difference, 6.0, 1e-12);
+  const TextTable table = comparison_table(found);
+  EXPECT_EQ(table.rows.at(0).at(0), "NEES ratio");
+  EXPECT_EQ(table.rows.at(0).at(3), "2.00");
+  EXPECT_EQ(table.rows.at(0).at(4), "[2.00, 2.00]");
+  EXPECT_EQ(table.rows.at(1).at(0), "position_rmse [m]");
+  EXPECT_EQ(table.rows.at(1).at(3), "6.00");
+}
+
 // EKF-SLAM has no effective particles: no row, rather than one that it loses.
 TEST(CompareCells, LeaveOutWhatDoesNotApply) {
   const CellAnalysis ekf = compared_cell("ekf", {1.0, 2.0});

@@ -97,8 +97,8 @@ class Compare : public BlinkProgram {
 TEST_F(Compare, SaysWhatEachCellHasMoreThanTheBaseline) {
   const Called called = call({"compare", "out.h5", "--baseline", "ekf_slam", "--csv", "tables"});
   EXPECT_EQ(called.code, 0) << called.err;
-  for (const char* words : {"position_rmse [m]", "heading_rmse [rad]", "nees", "cpu_seconds [s]",
-                            "row beats", "Holm"}) {
+  for (const char* words : {"position_rmse [m]", "heading_rmse [rad]", "NEES ratio",
+                            "cpu_seconds [s]", "row beats", "Holm"}) {
     EXPECT_THAT(called.out, HasSubstr(words));
   }
   EXPECT_THAT(text_of("tables/comparison.csv"), StartsWith("metric,units,cell,baseline,verdict,"));

@@ -189,7 +189,7 @@ TEST_F(Judge, PosesInSpaceAreJudgedAndCompared) {
   EXPECT_EQ(study.cells[0].nees[0].series.dimension, 6U);
   EXPECT_EQ(call({"report", "mine.h5", "-o", "page"}).code, 0);
   const Called compared = call({"compare", "mine.h5", "--baseline", "good"});
-  EXPECT_THAT(compared.out, HasSubstr("nees  bold")) << compared.out << compared.err;
+  EXPECT_THAT(compared.out, HasSubstr("NEES ratio  bold")) << compared.out << compared.err;
 }
 
 TEST_F(Judge, WrongInputIsNamed) {
