@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 
 namespace montecarta::analysis {
@@ -34,8 +33,7 @@ Panel panel_of(std::size_t particles, const std::vector<DrawnCurve>& drawn,
   Panel panel = blank;
   panel.name += "_m" + std::to_string(particles);
   panel.label = blank.label + ", M = " + std::to_string(particles);
-  const std::vector<double> nothing(drawn.front().curve.values.size(),
-                                    std::numeric_limits<double>::quiet_NaN());
+  const std::vector<double> nothing(drawn.front().curve.values.size(), kNaN);
   for (std::size_t i = 0; i < filters.size(); ++i) {
     const auto found = std::ranges::find_if(drawn, [&](const DrawnCurve& one) {
       const bool here = one.cell->particles == 0 || one.cell->particles == particles;

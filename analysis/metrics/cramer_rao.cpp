@@ -234,7 +234,7 @@ double JointBound::mean_map_variance() const {
     sum += y;
     count += 1.0;
   }
-  return count == 0.0 ? std::numeric_limits<double>::quiet_NaN() : sum / count;
+  return count == 0.0 ? kNaN : sum / count;
 }
 
 namespace {

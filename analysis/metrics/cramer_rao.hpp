@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "analysis/statistics/spread.hpp"
 #include "engine/core/drive.hpp"
 #include "engine/core/pose.hpp"
 #include "engine/records/result_file.hpp"
@@ -12,7 +13,6 @@
 #include <Eigen/Core>
 
 #include <cstddef>
-#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -91,12 +91,11 @@ inline constexpr std::size_t kBoundRuns = 16;
 struct CramerRaoBound {
   std::vector<double> position;  ///< [m] {scan}
   std::vector<double> heading;   ///< [rad] {scan}
-  double map =
-      std::numeric_limits<double>::quiet_NaN();  ///< [m] at the end, RMS over the landmarks
-                                                 ///< that came into view; NaN: none did
-  std::size_t runs = 0;  ///< number of averaged paths; 1 where all runs share one path
-  bool is_bound = true;  ///< false: a linearised reference
-  std::string missing;   ///< why there is none
+  double map = kNaN;             ///< [m] at the end, RMS over the landmarks
+                                 ///< that came into view; NaN: none did
+  std::size_t runs = 0;          ///< number of averaged paths; 1 where all runs share one path
+  bool is_bound = true;          ///< false: a linearised reference
+  std::string missing;           ///< why there is none
 
   bool empty() const { return position.empty(); }
   bool operator==(const CramerRaoBound&) const = default;
@@ -142,10 +141,10 @@ struct CellAnalysis;
 /// no bound (a linearised reference is none) or no error.
 struct Efficiency {
   /// Root mean squares over scans, that of the error also over runs.
-  double position = std::numeric_limits<double>::quiet_NaN();
-  double heading = std::numeric_limits<double>::quiet_NaN();
+  double position = kNaN;
+  double heading = kNaN;
   /// For the landmarks in the map at the end; needs known association.
-  double map = std::numeric_limits<double>::quiet_NaN();
+  double map = kNaN;
 };
 
 Efficiency efficiency_of(const CellAnalysis& cell, const CramerRaoBound& bound);

@@ -4,6 +4,7 @@
 #include "analysis/data/run_rows.hpp"
 #include "analysis/metrics/nees.hpp"
 #include "analysis/statistics/correlated_average.hpp"
+#include "analysis/statistics/spread.hpp"
 #include "analysis/verdict/verdict.hpp"
 #include "engine/core/drive.hpp"
 #include "engine/core/pose.hpp"
@@ -12,7 +13,6 @@
 
 #include <array>
 #include <cstddef>
-#include <limits>
 #include <span>
 #include <string>
 #include <tuple>
@@ -84,14 +84,12 @@ FixErrors errors_at_fixes(const PathAtFixes& fixes, std::span<const double> scan
 
 /// Scores of one run on one drive by a reference with known errors (STATISTICS 20).
 struct DriveScores {
-  static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
   /// {ErrorBlock} NEES at the fixes; effective_samples 0 where the block is not measured.
   std::array<CorrelatedAverage, kErrorBlocks.size()> blocks;
   /// {ErrorBlock} whitened errors; empty where the block is not measured.
   std::array<VectorSeries, kErrorBlocks.size()> errors;
   ErrorBlock leading = ErrorBlock::pose;  ///< the pose where there are headings, else the position
-  double median = kNone;                  ///< of the leading NEES, over that of a chi-square
+  double median = kNaN;                   ///< of the leading NEES, over that of a chi-square
   double seconds = 0.0;                   ///< from the first fix judged to the last
   std::size_t fixes = 0;                  ///< judged
   std::size_t in_gaps = 0;    ///< left out: scans around lie farther apart than kLongestScanGap

@@ -134,8 +134,7 @@ Figure bias_figure(const StudyAnalysis& study) {
 
 std::vector<Section> error_anatomy_sections(const StudyAnalysis& study) {
   const CellNumber bias = [](const CellAnalysis& cell) {
-    const ErrorAnatomy* anatomy = cell.find<ErrorAnatomy>();
-    return anatomy == nullptr ? kNaN : anatomy->mean_bias_share;
+    return cell.get<ErrorAnatomy>().mean_bias_share;
   };
   return table_section(
       section_of("error_anatomy", {{"bias", range_over_cells(study, bias, percent)}}),

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "analysis/statistics/merging.hpp"
+#include "analysis/statistics/spread.hpp"
 
 #include <Eigen/Core>
 
@@ -24,7 +25,7 @@ struct ErrorAnatomy {
   std::array<std::vector<double>, 3> bias;      ///< {component}{scan} mean error
   /// {scan} share of the NEES that comes from the mean error rather than from its scatter
   std::vector<double> bias_share;
-  double mean_bias_share = 0.0;  ///< over scans
+  double mean_bias_share = kNaN;  ///< over scans
 };
 
 /// The errors of one run and the deviations that the filter believes, in the same frame.

@@ -125,7 +125,7 @@ std::vector<TextTable::Entry> diversity_row(const StudyAnalysis& study, const Ce
   std::vector<TextTable::Entry> row = {
       {"ESS", readable(cell.over_runs("ess").mean)},
       {"resampled", percent(cell.over_runs("resampling_rate").mean)}};
-  LineageSummary none{.coalescence = kNaN, .coalesced_share = kNaN};
+  LineageSummary none;
   none.ancestors.fill(kNaN);
   const LineageSummary* found = cell.find<LineageSummary>();
   add_entries(kLineageQuantities, found != nullptr ? *found : none, study.level, row);
@@ -162,8 +162,7 @@ Figure ess_figure(const StudyAnalysis& study) {
 /// How far back the common ancestor lies, or, without ancestry, how many particles count.
 std::string diversity_summary(const StudyAnalysis& study) {
   const CellNumber back = [](const CellAnalysis& cell) {
-    const LineageSummary* lineages = cell.find<LineageSummary>();
-    return lineages == nullptr ? kNaN : lineages->coalescence;
+    return cell.get<LineageSummary>().coalescence;
   };
   const std::string range = range_over_cells(study, back, fixed_seconds);
   if (range != "-") return "the common ancestor of all particles lies " + range + " back";

@@ -3,6 +3,7 @@
 
 #include "analysis/data/run_rows.hpp"
 #include "analysis/statistics/merging.hpp"
+#include "analysis/statistics/spread.hpp"
 
 #include <algorithm>
 #include <array>
@@ -98,11 +99,11 @@ class LineageWalker {
 /// Ancestries over runs (Lineages).
 struct LineageSummary {
   std::array<double, kLineageLags.size()> ancestors{};  ///< {lag} mean over runs; NaN: too short
-  double coalescence = 0.0;      ///< [s] mean over the runs that have a common ancestor
-  double coalesced_share = 0.0;  ///< of the scans looked at
+  double coalescence = kNaN;      ///< [s] mean over the runs that have a common ancestor
+  double coalesced_share = kNaN;  ///< of the scans looked at
   /// Share of the mean squared position error that comes from the small number of particles; NaN if
   /// particles are not stored.
-  double monte_carlo_share = std::numeric_limits<double>::quiet_NaN();
+  double monte_carlo_share = kNaN;
 };
 
 /// Adds up Lineages over runs. Values that a run lacks are left out of the averages.

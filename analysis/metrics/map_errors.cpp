@@ -96,7 +96,7 @@ std::vector<Eigen::Vector2d> seen_along(std::span<const double> path, const MapC
 }
 
 LandmarkScore score(const Eigen::Vector2d& error, const Eigen::Matrix2d& covariance) {
-  LandmarkScore score{error.squaredNorm(), std::numeric_limits<double>::quiet_NaN(), true};
+  LandmarkScore score{error.squaredNorm(), kNaN, true};
   const Eigen::LLT<Eigen::Matrix2d> factor(covariance);
   const bool usable = factor.info() == Eigen::Success && covariance.allFinite();
   if (usable) score.nees = factor.matrixL().solve(error).squaredNorm();

@@ -5,13 +5,13 @@
 #include "analysis/metrics/references.hpp"
 #include "analysis/statistics/merging.hpp"
 #include "analysis/statistics/nees_bounds.hpp"
+#include "analysis/statistics/spread.hpp"
 #include "filters/models/field_of_view.hpp"
 
 #include <Eigen/Core>
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -51,17 +51,17 @@ struct MapCriteria {
 
 /// One landmark of one run; NaN where it is not in the map.
 struct LandmarkScore {
-  double squared_error = std::numeric_limits<double>::quiet_NaN();  ///< [m^2]
-  double nees = std::numeric_limits<double>::quiet_NaN();           ///< [1] of two components
+  double squared_error = kNaN;  ///< [m^2]
+  double nees = kNaN;           ///< [1] of two components
   bool in_map = false;
 };
 
 /// The final map of a run against the true landmarks that came into view in it.
 struct MapScores {
   Gospa gospa;
-  double rms = std::numeric_limits<double>::quiet_NaN();   ///< [m] over the landmarks in the map;
-                                                           ///< by identity: NaN where unknown
-  double nees = std::numeric_limits<double>::quiet_NaN();  ///< [1] mean over those with a NEES
+  double rms = kNaN;                     ///< [m] over the landmarks in the map;
+                                         ///< by identity: NaN where unknown
+  double nees = kNaN;                    ///< [1] mean over those with a NEES
   std::size_t undefined = 0;             ///< landmarks in the map that have no NEES
   std::vector<LandmarkScore> landmarks;  ///< {landmark}; empty where identities are unknown
 };
@@ -75,9 +75,9 @@ inline constexpr double kFoundWithin = 1.0;
 
 /// The final map of a run compared with surveyed beacons. NaN if no beacon was found.
 struct BeaconScores {
-  double found = 0.0;                                             ///< [1] beacons
-  double rms = std::numeric_limits<double>::quiet_NaN();          ///< [m] of those found
-  double aligned_rms = std::numeric_limits<double>::quiet_NaN();  ///< [m] of those found, aligned
+  double found = 0.0;         ///< [1] beacons
+  double rms = kNaN;          ///< [m] of those found
+  double aligned_rms = kNaN;  ///< [m] of those found, aligned
 };
 
 /// Pairs each beacon [m] with the nearest landmark of `map` [m] after `alignment`, the motion that
@@ -88,12 +88,11 @@ BeaconScores beacon_scores(std::span<const Eigen::Vector2d> map,
 
 /// One landmark over the runs that have it in their map.
 struct LandmarkErrors {
-  std::uint32_t runs = 0;                                   ///< with it in the map
-  std::uint32_t valid = 0;                                  ///< of them: with a finite NEES
-  double rms = std::numeric_limits<double>::quiet_NaN();    ///< [m]
-  double anees = std::numeric_limits<double>::quiet_NaN();  ///< [1] of two components
-  Interval bounds{std::numeric_limits<double>::quiet_NaN(),
-                  std::numeric_limits<double>::quiet_NaN()};  ///< of anees, by `valid`
+  std::uint32_t runs = 0;       ///< with it in the map
+  std::uint32_t valid = 0;      ///< of them: with a finite NEES
+  double rms = kNaN;            ///< [m]
+  double anees = kNaN;          ///< [1] of two components
+  Interval bounds{kNaN, kNaN};  ///< of anees, by `valid`
 };
 
 /// Final maps over the complete runs of a cell.

@@ -7,7 +7,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <regex>
 #include <string_view>
 
@@ -41,8 +40,7 @@ MismatchGrid grid_of(const std::vector<const CellAnalysis*>& cells) {
                     factors_of(cells, &Mismatch::sensor_noise),
                     {}};
   grid.anees.setConstant(static_cast<Eigen::Index>(grid.motion_noise.size()),
-                         static_cast<Eigen::Index>(grid.sensor_noise.size()),
-                         std::numeric_limits<double>::quiet_NaN());
+                         static_cast<Eigen::Index>(grid.sensor_noise.size()), kNaN);
   for (const CellAnalysis* cell : cells) {
     const NeesResult* pose = cell->find_nees(ErrorBlock::pose, cell->leading);
     if (pose == nullptr || !pose->is_tested()) continue;

@@ -3,12 +3,12 @@
 
 #include "analysis/data/run_rows.hpp"
 #include "analysis/statistics/sampler_scale.hpp"
+#include "analysis/statistics/spread.hpp"
 
 #include <Eigen/Core>
 
 #include <array>
 #include <cstddef>
-#include <limits>
 #include <span>
 
 namespace montecarta::analysis {
@@ -91,8 +91,8 @@ std::size_t whiten(const Eigen::VectorXd& error, const Eigen::MatrixXd& covarian
 /// A pose error in units of its covariance P, as whiten() computes it.
 struct WhitenedPose {
   Eigen::Vector3d whitened, standardised;
-  std::size_t rank = 0;                                           ///< components that are not NaN
-  double determinant = std::numeric_limits<double>::quiet_NaN();  ///< of P; NaN if it is singular
+  std::size_t rank = 0;       ///< components that are not NaN
+  double determinant = kNaN;  ///< of P; NaN if it is singular
 };
 
 /// Fills `pose`. Components count as exact under the conditions of nees().

@@ -3,11 +3,11 @@
 
 #include "analysis/data/run_rows.hpp"
 #include "analysis/metrics/nees.hpp"
+#include "analysis/statistics/spread.hpp"
 
 #include <Eigen/Core>
 
 #include <cstddef>
-#include <limits>
 #include <span>
 
 namespace montecarta::analysis {
@@ -18,10 +18,10 @@ namespace montecarta::analysis {
 struct ProperScores {
   /// Negative logarithm of the density of the pose [m, m, rad], mean over scans; NaN without a
   /// covariance.
-  double log_score = std::numeric_limits<double>::quiet_NaN();
+  double log_score = kNaN;
   /// [m] of the position, mean over at most kMostEnergyScans scans; NaN where particles are not
   /// stored.
-  double energy_score = std::numeric_limits<double>::quiet_NaN();
+  double energy_score = kNaN;
 };
 
 inline constexpr std::size_t kMostEnergyScans = 20;

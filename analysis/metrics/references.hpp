@@ -4,7 +4,6 @@
 #include "analysis/metrics/drive.hpp"
 #include "analysis/metrics/study_analysis.hpp"
 #include "analysis/metrics/verdict_table.hpp"
-#include "analysis/output/csv_file.hpp"
 #include "analysis/output/figure.hpp"
 #include "analysis/statistics/merging.hpp"
 #include "analysis/statistics/spread.hpp"
@@ -13,8 +12,6 @@
 
 #include <cmath>
 #include <cstddef>
-#include <filesystem>
-#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -47,17 +44,15 @@ inline constexpr double kLostBeyond = 10.0;
 /// all fixes, which removes the unknown error of the start's position and heading. NaN without
 /// fixes.
 struct ReferenceScores {
-  static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-  double rms = kNone;                  ///< [m] raw
-  double median = kNone;               ///< [m] raw
-  double gated_rms = kNone;            ///< [m] raw, over fixes within kReferenceGate medians
-  double gated_share = kNone;          ///< [1] of fixes within
-  double aligned_rms = kNone;          ///< [m]
-  double aligned_median = kNone;       ///< [m]
-  double aligned_gated_rms = kNone;    ///< [m]
-  double aligned_gated_share = kNone;  ///< [1]
-  double heading_rmse = kNone;         ///< [rad] raw; NaN where the reference has no heading
+  double rms = kNaN;                  ///< [m] raw
+  double median = kNaN;               ///< [m] raw
+  double gated_rms = kNaN;            ///< [m] raw, over fixes within kReferenceGate medians
+  double gated_share = kNaN;          ///< [1] of fixes within
+  double aligned_rms = kNaN;          ///< [m]
+  double aligned_median = kNaN;       ///< [m]
+  double aligned_gated_rms = kNaN;    ///< [m]
+  double aligned_gated_share = kNaN;  ///< [1]
+  double heading_rmse = kNaN;         ///< [rad] raw; NaN where the reference has no heading
 
   static constexpr auto members() {
     using Scores = ReferenceScores;

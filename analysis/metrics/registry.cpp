@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <limits>
 #include <utility>
 
 namespace montecarta::analysis {
@@ -165,7 +164,7 @@ void ScoreTable::add(const MeasuredRun& run) {
 
 void ScoreTable::add(std::span<const Value> values) {
   ++runs_;
-  for (auto& column : columns_) column.resize(runs_, std::numeric_limits<double>::quiet_NaN());
+  for (auto& column : columns_) column.resize(runs_, kNaN);
   for (const Value& value : values) columns_[index_of(value.name)].back() = value.value;
 }
 

@@ -75,10 +75,7 @@ std::vector<Figure> survival_figures(const StudyAnalysis& study) {
 
 /// The heading of the figure.
 std::vector<Section> survival_sections(const StudyAnalysis& study) {
-  const CellNumber median = [](const CellAnalysis& cell) {
-    const Survival* survival = cell.find<Survival>();
-    return survival == nullptr ? kNaN : survival->median;
-  };
+  const CellNumber median = [](const CellAnalysis& cell) { return cell.get<Survival>().median; };
   const NumberText time = [](double seconds) {
     return std::isinf(seconds) ? "never" : fixed_seconds(seconds);
   };

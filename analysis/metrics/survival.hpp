@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/statistics/nees_bounds.hpp"
+#include "analysis/statistics/spread.hpp"
 
 #include <cstddef>
 #include <optional>
@@ -24,7 +24,7 @@ struct Survival {
   std::size_t lost = 0;            ///< of them: by the end
   std::vector<double> share;       ///< {scan} of the runs
   std::vector<Interval> interval;  ///< {scan} of the share (Wilson 1927)
-  double median = 0.0;             ///< [s] when half of them are lost; infinity: never
+  double median = kNaN;            ///< [s] when half of them are lost; infinity: never
   Interval median_interval = {};   ///< [s] of the median, by median_interval(); NaN of few runs
 };
 
