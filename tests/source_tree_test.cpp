@@ -105,9 +105,9 @@ std::vector<std::string> in_other_namespaces(const Tree& tree) {
   return found;
 }
 
-/// The files to which a document in Markdown links.
-std::vector<fs::path> targets_of(const Lines& document) {
-  static const std::regex link(R"(\]\(([^)#:\s]+)(#[^)]*)?\))");
+/// The files to which a document in Markdown links, or whose path `link` finds otherwise.
+std::vector<fs::path> targets_of(
+    const Lines& document, const std::regex& link = std::regex(R"(\]\(([^)#:\s]+)(#[^)]*)?\))")) {
   std::vector<fs::path> targets;
   for (const std::string& line : document) {
     for (std::sregex_iterator at(line.begin(), line.end(), link), end; at != end; ++at)
@@ -247,6 +247,15 @@ TEST(SourceTree, DocumentsLinkToFilesThatExist) {
   EXPECT_GT(links, 100U);
   EXPECT_THAT(targets_of({"a [b](c/d.hpp) [e](f.md#g) [h](https://i.org) [j](#k)"}),
               ElementsAre("c/d.hpp", "f.md"));
+}
+
+// As `folder/file.cpp`, without a link.
+TEST(SourceTree, ArchitectureNamesSourcesThatExist) {
+  const fs::path root = MONTECARTA_SOURCE_DIR;
+  const std::regex source(R"(`(\w[\w/]*/\w+\.[ch]pp)`)");
+  const std::vector<fs::path> named = targets_of(read_lines(root / "ARCHITECTURE.md"), source);
+  for (const fs::path& path : named) EXPECT_TRUE(fs::exists(root / path)) << path;
+  EXPECT_GT(named.size(), 10U);
 }
 
 TEST(SourceTree, TheTreeThatIsReadIsWhole) {
