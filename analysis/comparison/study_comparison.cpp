@@ -179,20 +179,21 @@ std::string pairs_text(const CellComparison& row) {
   return text;
 }
 
-/// "nees higher (277 times)".
+/// "NEES ratio higher (277 times)".
 std::string finding_of(const CellComparison& row, double level) {
-  const std::string finding = std::string(row.score->name) + ' ' + row.verdict(level);
+  const std::string finding = name_in_tables(*row.score) + ' ' + row.verdict(level);
   return std::isnan(row.ratio) ? finding : finding + " (" + readable(row.ratio) + " times)";
 }
 
-/// "fast against ekf: nees higher (277 times); undecided: position_rmse.", of the rows of one cell.
+/// "fast against ekf: NEES ratio higher (277 times); undecided: position_rmse.", of the rows of one
+/// cell.
 std::string sentence_of(std::span<const CellComparison> rows, const Comparisons& all) {
   std::string decided, undecided;
   for (const CellComparison& row : rows) {
     const bool is_decided = row.verdict(all.level) != "undecided";
     std::string& list = is_decided ? decided : undecided;
     if (!list.empty()) list += ", ";
-    list += is_decided ? finding_of(row, all.level) : std::string(row.score->name);
+    list += is_decided ? finding_of(row, all.level) : name_in_tables(*row.score);
   }
   if (!undecided.empty())
     undecided = (decided.empty() ? "undecided: " : "; undecided: ") + undecided;
@@ -210,15 +211,18 @@ void add_failures(const StudyAnalysis& study, std::vector<std::string>& notes) {
   }
 }
 
+/// The interval of the difference that tables show.
+Interval shown_interval(const CellComparison& row) {
+  return {row.interval.lower / row.expectation, row.interval.upper / row.expectation};
+}
+
 std::vector<TextTable::Entry> row_of(const CellComparison& row, double level) {
-  const Interval interval{row.interval.lower / row.expectation,
-                          row.interval.upper / row.expectation};
   return {{"what", heading(name_in_tables(*row.score), row.score->units), Align::left},
           {"cell", row.cell, Align::left},
           {"verdict", row.verdict(level), Align::left},
           {"difference", readable(row.difference / row.expectation)},
           {level_text(level) + " interval",
-           row.has_heavy_tail ? "heavy tail" : interval_text(interval)},
+           row.has_heavy_tail ? "heavy tail" : interval_text(shown_interval(row))},
           {"ratio", readable(row.ratio)},
           {"runs won", percent(row.wins.share())},
           {"p sign", readable(row.wins.p_holm, 2)},
@@ -339,12 +343,14 @@ std::vector<std::string> comparison_sentences(const Comparisons& comparisons) {
 
 TextTable difference_table(const Comparisons& comparisons) {
   TextTable table{.keys = 2};
-  const std::string difference = "difference [" + level_text(comparisons.level) + "]";
+  const std::string heading_of_difference = "difference [" + level_text(comparisons.level) + "]";
   for (const CellComparison& row : comparisons.rows) {
-    table.add({{"what", heading(row.score->name, row.score->units), Align::left},
+    const double difference = row.difference / row.expectation;
+    table.add({{"what", heading(name_in_tables(*row.score), row.score->units), Align::left},
                {"cell", row.cell, Align::left},
-               {difference, row.has_heavy_tail ? readable(row.difference) + " (heavy tail)"
-                                               : with_interval(row.difference, row.interval)},
+               {heading_of_difference, row.has_heavy_tail
+                                           ? readable(difference) + " (heavy tail)"
+                                           : with_interval(difference, shown_interval(row))},
                {"ratio", readable(row.ratio)},
                {"runs won", percent(row.wins.share())}});
   }
