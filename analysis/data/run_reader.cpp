@@ -61,9 +61,8 @@ void RunReader::read_final_map(std::size_t i, RunRows& rows, Scratch& scratch) c
   rows.final_map.reset();
   const bool is_final = cell_->has(kFinalMapSeen);
   const std::string prefix = is_final ? "final_map_" : "map_";
-  const auto seen_column = std::ranges::find(cell_->columns, prefix + "seen", &Column::name);
-  if (seen_column == cell_->columns.end()) return;
-  const std::size_t landmarks = seen_column->shape.back();
+  if (!cell_->has(prefix + "seen")) return;
+  const std::size_t landmarks = cell_->find(prefix + "seen")->shape.back();
   // A mean over weights that add up to one but for rounding.
   if (!rows.map_size.empty() &&
       rows.map_size.back() > static_cast<double>(landmarks) + kRoundingOfCounts)
@@ -84,9 +83,8 @@ void RunReader::read_final_map(std::size_t i, RunRows& rows, Scratch& scratch) c
 }
 
 void RunReader::read_whole(std::string_view column, std::size_t i, std::vector<double>& out) const {
-  const auto found = std::ranges::find(cell_->columns, column, &Column::name);
-  if (found == cell_->columns.end()) return out.clear();
-  out.resize(found->elements());
+  if (!cell_->has(column)) return out.clear();
+  out.resize(cell_->find(column)->elements());
   file_->read(*cell_, column, i, std::span(out));
 }
 

@@ -173,8 +173,8 @@ bool same_column(const Column& a, const Column& b) {
 }
 
 bool same_columns(const StoredCell& a, const StoredCell& b) {
-  return a.label == b.label && std::ranges::equal(a.columns, b.columns, same_column) &&
-         std::ranges::equal(a.full_columns, b.full_columns, same_column);
+  return a.label == b.label && a.usual_columns == b.usual_columns &&
+         std::ranges::equal(a.columns, b.columns, same_column);
 }
 
 /// A fact about a build. Flags are returned without the instruction set, which does not change any

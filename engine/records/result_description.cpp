@@ -38,10 +38,8 @@ std::vector<std::pair<double, double>> pairs(const std::vector<Eigen::Vector2d>&
 StoredCell describe(const Cell& cell, const StudyPlan& plan) {
   const RecordLayout layout(cell, plan.columns, plan.drives->itinerary(),
                             plan.columns.full_runs > 0 ? Detail::full : Detail::usual);
-  const auto first = layout.columns().begin(), last = layout.columns().end();
-  const auto full = first + static_cast<std::ptrdiff_t>(layout.usual_columns());
-  return {cell.label,    cell.filter,   cell.long_name, cell.particles,
-          cell.settings, {first, full}, {full, last}};
+  return {cell.label,    cell.filter,      cell.long_name,        cell.particles,
+          cell.settings, layout.columns(), layout.usual_columns()};
 }
 
 void describe_time(const Itinerary& itinerary, bool scans_only, ResultDescription& result) {
@@ -60,20 +58,22 @@ OwnDrive own_drive(const Itinerary& itinerary) {
   return drive;
 }
 
-bool has(const std::vector<Column>& columns, std::string_view name) {
+bool has(std::span<const Column> columns, std::string_view name) {
   return std::ranges::find(columns, name, &Column::name) != columns.end();
 }
 
 }  // namespace
 
-bool StoredCell::has(std::string_view column) const { return engine::has(columns, column); }
+bool StoredCell::has(std::string_view column) const { return engine::has(usual(), column); }
 
 const Column* StoredCell::find(std::string_view column) const {
-  for (const auto* some : {&columns, &full_columns}) {
-    const auto found = std::ranges::find(*some, column, &Column::name);
-    if (found != some->end()) return &*found;
-  }
-  return nullptr;
+  const auto found = std::ranges::find(columns, column, &Column::name);
+  return found == columns.end() ? nullptr : &*found;
+}
+
+std::string StoredCell::dataset_of(std::size_t c) const {
+  return "cells/" + label + "/" + (c < usual_columns ? "" : std::string(format::kFull) + "/") +
+         columns[c].name;
 }
 
 std::size_t ResultDescription::full_runs_here() const {
@@ -85,9 +85,8 @@ double ResultDescription::bytes() const {
   if (own_landmarks) of_run += static_cast<double>(landmarks.size() * sizeof(Eigen::Vector2d));
   double of_full_run = 0.0;
   for (const StoredCell& cell : cells) {
-    for (const Column& column : cell.columns) of_run += static_cast<double>(column.bytes());
-    for (const Column& column : cell.full_columns)
-      of_full_run += static_cast<double>(column.bytes());
+    for (const Column& column : cell.usual()) of_run += static_cast<double>(column.bytes());
+    for (const Column& column : cell.full()) of_full_run += static_cast<double>(column.bytes());
   }
   double of_sums = 0.0;
   if (sums) {
@@ -182,15 +181,13 @@ std::optional<Column> column_of(const h5::Handle& group, const std::string& name
                 h5::find_text(dataset, "long_name").value_or(name)};
 }
 
-/// All members of the group that are columns of `runs` runs.
-std::vector<Column> read_columns(const h5::Handle& group, std::string_view run_axis,
-                                 std::size_t runs) {
-  std::vector<Column> columns;
+/// Appends all members of the group that are columns of `runs` runs.
+void read_columns(const h5::Handle& group, std::string_view run_axis, std::size_t runs,
+                  std::vector<Column>& columns) {
   for (const std::string& name : h5::members(group)) {
     if (h5::is_group(group, name)) continue;
     if (auto column = column_of(group, name, run_axis, runs)) columns.push_back(*std::move(column));
   }
-  return columns;
 }
 
 StoredCell read_cell(const h5::Handle& cells, const std::string& label,
@@ -202,10 +199,11 @@ StoredCell read_cell(const h5::Handle& cells, const std::string& label,
   cell.long_name = h5::text(group, "long_name");
   cell.particles = h5::number(group, "particles");
   cell.settings = h5::texts(h5::open_group(group, "settings"));
-  cell.columns = read_columns(group, "run", result.runs.size());
+  read_columns(group, "run", result.runs.size(), cell.columns);
+  cell.usual_columns = cell.columns.size();
   if (h5::has(group, format::kFull)) {
-    cell.full_columns = read_columns(h5::open_group(group, format::kFull), format::kFullRun,
-                                     result.full_runs_here());
+    read_columns(h5::open_group(group, format::kFull), format::kFullRun, result.full_runs_here(),
+                 cell.columns);
   }
   return cell;
 }
@@ -259,12 +257,6 @@ bool increases(const std::vector<T>& values) {
   return std::ranges::adjacent_find(values, std::ranges::greater_equal()) == values.end();
 }
 
-std::vector<Column> all_columns(const StoredCell& cell) {
-  std::vector<Column> all = cell.columns;
-  all.insert(all.end(), cell.full_columns.begin(), cell.full_columns.end());
-  return all;
-}
-
 class Check {
  public:
   explicit Check(const std::filesystem::path& path) : path_(path) {}
@@ -290,7 +282,7 @@ void check_texts(const ResultDescription& d, const Check& check) {
   for (const StoredCell& cell : d.cells) {
     for (const std::string& text : {cell.label, cell.filter, cell.long_name}) expect_line(text);
     for (const auto& [key, value] : cell.settings) expect_line(key), expect_line(value);
-    for (const Column& column : all_columns(cell)) {
+    for (const Column& column : cell.columns) {
       for (const std::string& text : {column.name, column.units, column.long_name}) {
         expect_line(text);
       }
@@ -398,21 +390,21 @@ const std::vector<std::vector<std::string_view>> kTogether = {
     nees_columns()};
 
 void check_columns(const StoredCell& cell, const Check& check) {
-  for (const Column& column : all_columns(cell)) {
+  for (const Column& column : cell.columns) {
     const auto known = std::ranges::find(column_table(), column.name, &ColumnKind::name);
     check.expect(known == column_table().end() || known->axes == column.axes,
                  "cells/" + cell.label + "/" + column.name + " has other axes than it should");
   }
-  for (const auto* columns : {&cell.columns, &cell.full_columns}) {
+  for (const std::span<const Column> columns : {cell.usual(), cell.full()}) {
     for (const auto& together : kTogether) {
       const auto there = std::ranges::count_if(
-          together, [&](std::string_view name) { return has(*columns, name); });
+          together, [&](std::string_view name) { return has(columns, name); });
       check.expect(there == 0 || there == std::ssize(together),
                    "cells/" + cell.label + " has only a part of " + std::string(together.front()) +
                        " and what belongs to it");
     }
-    check.expect(has(*columns, "pose_covariance") || cell.has("error") ||
-                     !has(*columns, "pose_covariance_mixture"),
+    check.expect(has(columns, "pose_covariance") || cell.has("error") ||
+                     !has(columns, "pose_covariance_mixture"),
                  "cells/" + cell.label + " has pose_covariance_mixture and no pose_covariance");
   }
   check.expect(cell.has("pose_mean") || cell.has("error"),
@@ -434,7 +426,7 @@ void check_lengths(const ResultDescription& d, const StoredCell& cell, const Che
                             .landmark = std::nullopt,
                             .error_component = std::nullopt};
   std::map<Axis, std::size_t> own;
-  for (const Column& column : all_columns(cell)) {
+  for (const Column& column : cell.columns) {
     for (std::size_t a = 0; a < column.axes.size(); ++a) {
       const Axis axis = row_axis(column.axes[a]);
       const auto known =

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -25,12 +26,17 @@ struct StoredCell {
   std::string long_name;
   std::size_t particles = 0;
   TextPairs settings;
-  std::vector<Column> columns;       ///< columns that every run has
-  std::vector<Column> full_columns;  ///< further columns that only the first runs have
+  std::vector<Column> columns;    ///< those of every run, then those of the first runs only
+  std::size_t usual_columns = 0;  ///< number of columns that every run has
+
+  std::span<const Column> usual() const { return std::span(columns).first(usual_columns); }
+  std::span<const Column> full() const { return std::span(columns).subspan(usual_columns); }
   /// Returns whether every run has the column.
   bool has(std::string_view column) const;
   /// The column of that name, of every run or of the first runs; nullptr if it is not stored.
   const Column* find(std::string_view column) const;
+  /// Name of the dataset of column `c` in the file.
+  std::string dataset_of(std::size_t c) const;
 };
 
 /// A recorded drive that is one run of the study.

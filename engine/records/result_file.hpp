@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/records/columns.hpp"
+#include "engine/records/h5.hpp"
+#include "engine/records/posix_file.hpp"
 #include "engine/records/result_description.hpp"
+#include "engine/records/result_layout.hpp"
 #include "engine/records/run_record.hpp"
 
 #include <cstdint>
 #include <filesystem>
-#include <memory>
+#include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -26,32 +29,29 @@ class ResultFile {
   /// Throws StudyError if `path` does not exist, is no HDF5 file, or is no montecarta result of a
   /// known major version.
   explicit ResultFile(const std::filesystem::path& path);
-  ~ResultFile();
-  ResultFile(ResultFile&&) noexcept;
 
-  const std::filesystem::path& path() const;
+  const std::filesystem::path& path() const { return path_; }
   /// The whole description. The members below give access to its parts.
-  const ResultDescription& description() const;
-  const std::string& study_name() const;
-  const std::string& title() const;
-  const std::string& study_text() const;  ///< resolved study file
-  const std::string& study_sha256() const;
-  std::uint64_t seed() const;
-  std::uint64_t study_runs() const;                ///< in the whole study; this file may hold fewer
-  const std::vector<std::uint64_t>& runs() const;  ///< numbers of the runs, the `run` scale
-  const std::vector<double>& times() const;        ///< [s] rows of `time`
-  /// Row of `time` at which each scan was taken.
-  const std::vector<std::uint32_t>& scan_rows() const;
-  const std::vector<double>& scan_times() const;                    ///< [s]
-  const std::vector<std::pair<double, double>>& landmarks() const;  ///< [m] true positions
-  const std::vector<std::pair<double, double>>& waypoints() const;  ///< [m]
+  const ResultDescription& description() const { return description_; }
+  const std::string& study_name() const { return description_.study_name; }
+  const std::string& title() const { return description_.title; }
+  const std::string& study_text() const { return description_.study_text; }
+  const std::string& study_sha256() const { return description_.study_sha256; }
+  std::uint64_t seed() const { return description_.seed; }
+  std::uint64_t study_runs() const { return description_.study_runs; }
+  const std::vector<std::uint64_t>& runs() const { return description_.runs; }
+  const std::vector<double>& times() const { return description_.times; }
+  const std::vector<std::uint32_t>& scan_rows() const { return description_.scan_rows; }
+  const std::vector<double>& scan_times() const { return description_.scan_times; }
+  const std::vector<std::pair<double, double>>& landmarks() const { return description_.landmarks; }
+  const std::vector<std::pair<double, double>>& waypoints() const { return description_.waypoints; }
+  const std::vector<ReferencePath>& references() const { return description_.references; }
+  bool has_truth() const { return description_.has_truth; }
+  const TextPairs& scenario() const { return description_.scenario; }
+  const TextPairs& provenance() const { return description_.provenance; }
+  const std::vector<StoredCell>& cells() const { return description_.cells; }
   /// Returns whether errors are known, from true poses or from imported estimates.
   bool has_errors() const;
-  const std::vector<ReferencePath>& references() const;  ///< of a recorded drive; else empty
-  bool has_truth() const;                                ///< whether true poses are stored
-  const TextPairs& scenario() const;
-  const TextPairs& provenance() const;
-  const std::vector<StoredCell>& cells() const;
 
   std::vector<RunStatus> status(const StoredCell& cell) const;  ///< one per run in this file
   /// Throws StudyError if the bytes of run index `i` of `cell`, including its status and true path,
@@ -68,7 +68,7 @@ class ResultFile {
 
   /// Returns whether the file has sums over groups of runs. Then the members above are of the first
   /// runs.
-  bool has_sums() const { return description().sums.has_value(); }
+  bool has_sums() const { return description_.sums.has_value(); }
   std::vector<SumGroup> sum_groups(const StoredCell& cell) const;
   /// The sums of one of them. Any number of threads may call it.
   std::vector<std::uint64_t> sums(const SumGroup& group) const;
@@ -88,13 +88,33 @@ class ResultFile {
   /// Requires has_truth().
   void read_truth(std::size_t i, std::span<double> out) const;
   /// Returns whether every run has its own landmarks.
-  bool has_own_landmarks() const;
+  bool has_own_landmarks() const { return description_.own_landmarks; }
   /// True positions [m] of the landmarks in run index i, by identity; empty if unknown.
   std::vector<Eigen::Vector2d> landmarks_of(std::size_t i) const;
 
  private:
-  struct Contents;
-  std::unique_ptr<Contents> contents_;
+  std::size_t index_of(const StoredCell& cell) const;
+  /// All values of a dataset with one value for each run.
+  template <class T>
+  std::vector<T> per_run(const std::string& dataset, Element element) const;
+  template <class Number>
+  void read_column(const StoredCell& cell, std::string_view column, std::size_t i,
+                   std::span<Number> out) const;
+  /// Reads run index `i` of a dataset. If the file has a seal, the numbers are at `slab`, and are
+  /// of type `element`.
+  template <class Number>
+  void read_row(const std::string& dataset, const Slab* slab, Element element, std::size_t i,
+                std::span<Number> out) const;
+
+  std::filesystem::path path_;
+  bool has_seal_;
+  h5::Handle file_;
+  PosixFile bytes_;
+  ResultDescription description_;
+  /// nullopt if the file has no seal. Then another program may have rewritten it, and HDF5 reads
+  /// all numbers.
+  std::optional<ResultSlabs> slabs_;
+  mutable std::map<std::string, h5::Handle> datasets_;  ///< that HDF5 has read rows of
 };
 
 }  // namespace montecarta::engine

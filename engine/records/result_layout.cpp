@@ -43,10 +43,15 @@ class SlabFinder {
   CellSlabs find(const StoredCell& cell) const {
     const std::string group = "cells/" + cell.label + "/";
     CellSlabs slabs;
-    for (const Column& column : cell.columns)
-      slabs.columns.push_back(find(group + column.name, column.bytes()));
-    slabs.usual_columns = slabs.columns.size();
-    add_full(cell, group + format::kFull + "/", slabs);
+    slabs.usual_columns = cell.usual_columns;
+    for (std::size_t c = 0; c < cell.columns.size(); ++c) {
+      slabs.columns.push_back(find(cell.dataset_of(c), cell.columns[c].bytes(),
+                                   c < cell.usual_columns ? runs_ : full_runs_));
+    }
+    if (!cell.full().empty()) {
+      slabs.full_fingerprint =
+          find(group + format::kFull + "/fingerprint", sizeof(std::uint64_t), full_runs_);
+    }
     slabs.failure_reason = find(group + "failure_reason", kFailureReasonBytes);
     slabs.failure_step = find(group + "failure_step", sizeof(std::uint32_t));
     slabs.fingerprint = find(group + "fingerprint", sizeof(std::uint64_t));
@@ -56,13 +61,6 @@ class SlabFinder {
   }
 
  private:
-  void add_full(const StoredCell& cell, const std::string& group, CellSlabs& slabs) const {
-    if (cell.full_columns.empty()) return;
-    for (const Column& column : cell.full_columns)
-      slabs.columns.push_back(find(group + column.name, column.bytes(), full_runs_));
-    slabs.full_fingerprint = find(group + "fingerprint", sizeof(std::uint64_t), full_runs_);
-  }
-
   const std::filesystem::path& path_;
   h5::Handle file_;
   std::size_t runs_;
@@ -245,13 +243,11 @@ void add_truth(const h5::Handle& file, const ResultDescription& result, const Sc
 /// Adds a scale to the group of a cell, if cells differ in its length.
 void add_own_scale(const h5::Handle& group, const StoredCell& cell, Axis axis,
                    const std::string& long_name, Scales& scales) {
-  for (const auto* columns : {&cell.columns, &cell.full_columns}) {
-    for (const Column& column : *columns) {
-      const auto found = std::find(column.axes.begin(), column.axes.end(), axis);
-      if (found == column.axes.end()) continue;
-      const auto length = column.shape[static_cast<std::size_t>(found - column.axes.begin())];
-      return add_index_scale(group, std::string(name_of(axis)), length, {"1", long_name}, scales);
-    }
+  for (const Column& column : cell.columns) {
+    const auto found = std::ranges::find(column.axes, axis);
+    if (found == column.axes.end()) continue;
+    const auto length = column.shape[static_cast<std::size_t>(found - column.axes.begin())];
+    return add_index_scale(group, std::string(name_of(axis)), length, {"1", long_name}, scales);
   }
 }
 
@@ -283,13 +279,13 @@ void add_column(const h5::Handle& group, const Column& column, const char* run_a
 /// Adds the columns that only the first runs have.
 void add_full(const h5::Handle& group, const StoredCell& cell, std::size_t runs,
               const Scales& scales) {
-  if (cell.full_columns.empty()) return;
+  if (cell.full().empty()) return;
   const h5::Handle full = h5::create_group(group, format::kFull);
   const auto fingerprint =
       add_dataset(full, "fingerprint", Element::u64, {runs}, {format::kFullRun},
                   {"1", "XXH3 of what is stored of the run here"}, scales);
   write_zeros(fingerprint, Element::u64, runs);
-  for (const Column& column : cell.full_columns) {
+  for (const Column& column : cell.full()) {
     add_column(full, column, format::kFullRun, runs, scales);
   }
 }
@@ -313,7 +309,7 @@ void add_cell(const h5::Handle& cells, const StoredCell& cell, const ResultDescr
     add_own_scale(group, cell, axis, "component, in the order of the setting components", scales);
   }
   add_bookkeeping(group, runs, scales);
-  for (const Column& column : cell.columns) add_column(group, column, "run", runs, scales);
+  for (const Column& column : cell.usual()) add_column(group, column, "run", runs, scales);
   add_full(group, cell, result.full_runs_here(), scales);
 }
 

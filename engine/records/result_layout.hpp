@@ -31,7 +31,7 @@ struct Slab {
 
 /// The slabs of one cell.
 struct CellSlabs {
-  std::vector<Slab> columns;      ///< StoredCell::columns, then the columns of full runs only
+  std::vector<Slab> columns;      ///< in the order of StoredCell::columns
   std::size_t usual_columns = 0;  ///< number of columns that every run has
   Slab failure_reason, failure_step, fingerprint, cpu_seconds, status;
   Slab full_fingerprint;  ///< without runs if full runs have no further columns

@@ -85,7 +85,7 @@ void print_datasets(const std::vector<Dataset>& datasets, std::size_t indent) {
   std::cout << listing(items, indent, output_width() / 2);
 }
 
-void print_columns(const std::string& group, const std::vector<Column>& columns, std::size_t runs) {
+void print_columns(const std::string& group, std::span<const Column> columns, std::size_t runs) {
   std::vector<Dataset> datasets;
   for (const Column& column : columns) {
     const std::string units = column.units == "1" ? "" : " [" + column.units + "]";
@@ -115,10 +115,9 @@ void print_datasets(const ResultFile& file) {
   }
   const std::size_t full_runs = file.description().full_runs_here();
   for (const StoredCell& cell : file.cells()) {
-    print_columns("/cells/" + cell.label, cell.columns, runs);
-    if (!cell.full_columns.empty()) {
-      print_columns("/cells/" + cell.label + "/full", cell.full_columns, full_runs);
-    }
+    print_columns("/cells/" + cell.label, cell.usual(), runs);
+    if (!cell.full().empty())
+      print_columns("/cells/" + cell.label + "/full", cell.full(), full_runs);
   }
 }
 

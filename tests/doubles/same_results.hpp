@@ -44,13 +44,11 @@ inline std::string difference_of_run(const ResultFile& a, std::size_t i, const R
     const StoredCell& right = b.cells()[c];
     const std::string outcome = difference_of_outcome(a, left, i, b, right, j);
     if (!outcome.empty()) return outcome;
-    for (const auto* columns : {&left.columns, &left.full_columns}) {
-      for (const Column& column : *columns) {
-        const bool is_held = a.holds(left, column.name, i);
-        if (is_held != b.holds(right, column.name, j)) return left.label + "/" + column.name;
-        if (is_held && !same_bits(values_of(a, left, column, i), values_of(b, right, column, j)))
-          return left.label + "/" + column.name;
-      }
+    for (const Column& column : left.columns) {
+      const bool is_held = a.holds(left, column.name, i);
+      if (is_held != b.holds(right, column.name, j)) return left.label + "/" + column.name;
+      if (is_held && !same_bits(values_of(a, left, column, i), values_of(b, right, column, j)))
+        return left.label + "/" + column.name;
     }
   }
   if (a.has_truth() != b.has_truth()) return "truth";

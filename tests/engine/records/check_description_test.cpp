@@ -81,7 +81,8 @@ Column& column_of(ResultDescription& d, std::string_view name) {
 /// Takes a column away.
 auto without(std::string_view name) {
   return [=](ResultDescription& d) {
-    std::erase_if(d.cells[0].columns, [&](const Column& column) { return column.name == name; });
+    d.cells[0].usual_columns -= std::erase_if(
+        d.cells[0].columns, [&](const Column& column) { return column.name == name; });
   };
 }
 

@@ -16,7 +16,7 @@
 namespace montecarta::engine {
 namespace {
 
-std::vector<std::string> names_of(const std::vector<Column>& columns) {
+std::vector<std::string> names_of(std::span<const Column> columns) {
   std::vector<std::string> names;
   for (const Column& column : columns) names.push_back(column.name);
   return names;
@@ -33,9 +33,8 @@ class FullRuns : public ResultWriting {
 
 TEST_F(FullRuns, HaveAllThatAReplayNeedsBehindTheUsualColumns) {
   const ResultDescription d = describe(plan_, {});
-  EXPECT_THAT(names_of(d.cells[0].full_columns),
-              ElementsAre("ancestor", "particle_pose", "log_weight", "map_mean", "map_covariance",
-                          "map_seen"));
+  EXPECT_THAT(names_of(d.cells[0].full()), ElementsAre("ancestor", "particle_pose", "log_weight",
+                                                       "map_mean", "map_covariance", "map_seen"));
   EXPECT_TRUE(d.cells[0].has("pose_covariance"));
   EXPECT_FALSE(d.cells[0].has("particle_pose"));
   EXPECT_EQ(d.full_runs_here(), 2U);
@@ -47,7 +46,7 @@ TEST_F(FullRuns, HoldNothingMoreWhereEveryRunHasIt) {
   plan_.columns = {.particles = true, .map = true, .full_runs = 2};
   write_result(path_, plan_);
   const ResultFile file(path_);
-  EXPECT_TRUE(file.cells()[0].full_columns.empty());
+  EXPECT_TRUE(file.cells()[0].full().empty());
   EXPECT_FALSE(h5::has(h5::open_file(path_), "cells/scripted_m4/full"));
 }
 
@@ -58,7 +57,7 @@ TEST_F(FullRuns, AreHandedBackBitByBitAndOthersAreNot) {
   ASSERT_EQ(file.description().full_runs, 2U);
   for (std::uint64_t run = 0; run < plan_.runs; ++run) {
     FilledRecord filled(plan_, 1, run);
-    for (const Column& column : cell.full_columns) {
+    for (const Column& column : cell.full()) {
       EXPECT_EQ(file.holds(cell, column.name, run), run < 2) << column.name << run;
       std::vector<double> read(column.elements());
       if (run >= 2) {
@@ -128,7 +127,7 @@ TEST_F(FullRuns, AreMergedFromShardsOfWhichSomeHoldNone) {
   write_result(folder_ / "a.h5", part_of_plan(plan_, 0, 1));
   write_result(folder_ / "b.h5", part_of_plan(plan_, 1, 3));
   write_result(folder_ / "c.h5", part_of_plan(plan_, 2, 4));
-  EXPECT_EQ(ResultFile(folder_ / "c.h5").cells()[0].full_columns.size(), 6U);
+  EXPECT_EQ(ResultFile(folder_ / "c.h5").cells()[0].full().size(), 6U);
   for (const std::vector<std::string>& order :
        {std::vector<std::string>{"a.h5", "b.h5", "c.h5"}, {"c.h5", "b.h5", "a.h5"}}) {
     std::vector<std::filesystem::path> shards;

@@ -276,14 +276,18 @@ TEST_F(Commands, TablesAndReportsAreNotOverwrittenUnaskedNorBegunWithoutGnuplot)
 }
 
 TEST_F(Commands, AnalyzeOfManyFilesNamesEachAndRefusesAStranger) {
-  ASSERT_EQ(call({"run", "blink.ini", "-o", "a.h5", "--quiet", "--shard", "0/2"}).code, 0);
-  ASSERT_EQ(call({"run", "blink.ini", "-o", "b.h5", "--quiet", "--shard", "1/2"}).code, 0);
-  const Called both = call({"analyze", "a.h5", "b.h5"});
+  for (const std::string name : {"0", "1"}) {
+    ASSERT_EQ(call({"run", "blink.ini", "-o", name + ".h5", "--quiet", "--shard", name + "/2",
+                    "--set", "record.full_runs=2"})
+                  .code,
+              0);
+  }
+  const Called both = call({"analyze", "0.h5", "1.h5"});
   EXPECT_EQ(both.code, 0) << both.err;
-  EXPECT_THAT(both.out, testing::StartsWith("a.h5\n"));
-  EXPECT_THAT(both.out, HasSubstr("\n\nb.h5\n"));
+  EXPECT_THAT(both.out, testing::StartsWith("0.h5\n"));
+  EXPECT_THAT(both.out, HasSubstr("\n\n1.h5\n"));
   ASSERT_EQ(call({"run", "blink.ini", "-o", "c.h5", "--quiet", "--set", "study.seed=9"}).code, 0);
-  expect_refused({"analyze", "a.h5", "c.h5"}, "c.h5: holds another study");
+  expect_refused({"analyze", "0.h5", "c.h5"}, "c.h5: holds another study");
 }
 
 TEST_F(Commands, FullStandardOutputIsAFailure) {
