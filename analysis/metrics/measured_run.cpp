@@ -284,7 +284,7 @@ RunCriteria criteria_of(const ResultFile& file, double level, double within) {
     criteria.references = criteria.drives.front().references;
     criteria.judged_fixes = criteria.drives.front().judged_fixes;
   }
-  for (const auto& [x, y] : file.landmarks()) criteria.beacons.emplace_back(x, y);
+  criteria.beacons = file.landmarks();
   return criteria;
 }
 

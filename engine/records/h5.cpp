@@ -43,18 +43,11 @@ Handle file_creation() {
   return creation;
 }
 
-std::string name_of_file(hid_t id) {
-  std::string name(static_cast<std::size_t>(std::max<ssize_t>(H5Fget_name(id, nullptr, 0), 0)),
-                   '\0');
-  H5Fget_name(id, name.data(), name.size() + 1);
+/// The name that a function of HDF5 gives to an object.
+std::string name_by(ssize_t (*name_of)(hid_t, char*, std::size_t), hid_t id) {
+  std::string name(static_cast<std::size_t>(std::max<ssize_t>(name_of(id, nullptr, 0), 0)), '\0');
+  name_of(id, name.data(), name.size() + 1);
   return name;
-}
-
-std::string name_in_file(hid_t id) {
-  std::string name(static_cast<std::size_t>(std::max<ssize_t>(H5Iget_name(id, nullptr, 0), 0)),
-                   '\0');
-  H5Iget_name(id, name.data(), name.size() + 1);
-  return name == "/" ? "" : name;
 }
 
 herr_t collect_name(hid_t, const char* name, const H5L_info_t*, void* names) {
@@ -70,21 +63,22 @@ bool is_only_read(const Handle& object) {
   return file.id() >= 0 && H5Fget_intent(file.id(), &intent) >= 0 && intent == H5F_ACC_RDONLY;
 }
 
-}  // namespace
-
-namespace detail {
-
+/// Returns `status`, or throws "file: cannot <what> '/object/name'" if it is negative: StudyError
+/// if the file is open for reading only, otherwise RunError.
 std::int64_t check(std::int64_t status, const char* what, const Handle& object,
                    const std::string& name) {
   if (status >= 0) return status;
-  const std::string within = name_in_file(object.id()) + (name.empty() ? "" : "/" + name);
+  const std::string own = name_by(H5Iget_name, object.id());
+  const std::string within = (own == "/" ? "" : own) + (name.empty() ? "" : "/" + name);
   const std::string said =
-      name_of_file(object.id()) + ": cannot " + what + " '" + within +
+      name_by(H5Fget_name, object.id()) + ": cannot " + what + " '" + within +
       "' (the file is damaged, not of montecarta, or the disk failed): check it with 'h5ls -r'";
   if (is_only_read(object)) throw StudyError(said);
   throw RunError(said);
 }
 
+/// Throws StudyError if `elements` of `width` bytes are more than the file of `object` can hold,
+/// even if they are compressed.
 void expect_in_file(std::span<const unsigned long long> elements, std::size_t width,
                     const Handle& object, const std::string& name) {
   constexpr unsigned long long kMostCompression = 1032;  // largest factor of deflate
@@ -97,7 +91,8 @@ void expect_in_file(std::span<const unsigned long long> elements, std::size_t wi
   check(fits && bytes <= most ? 0 : -1, "believe the size of", object, name);
 }
 
-std::int64_t native_type(Element element) {
+/// The HDF5 type of an element in the byte order of this machine. It must not be closed.
+hid_t native_type(Element element) {
   switch (element) {
     case Element::f64:
       return H5T_NATIVE_DOUBLE;
@@ -113,7 +108,7 @@ std::int64_t native_type(Element element) {
   return H5I_INVALID_HID;
 }
 
-}  // namespace detail
+}  // namespace
 
 Handle::~Handle() {
   if (id_ >= 0) H5Idec_ref(id_);
@@ -150,10 +145,10 @@ Handle create_image(const std::string& name) {
 }
 
 std::string image_of(const Handle& file) {
-  detail::check(H5Fflush(file.id(), H5F_SCOPE_LOCAL), "flush", file, "");
-  const auto size = detail::check(H5Fget_file_image(file.id(), nullptr, 0), "measure", file, "");
+  check(H5Fflush(file.id(), H5F_SCOPE_LOCAL), "flush", file, "");
+  const auto size = check(H5Fget_file_image(file.id(), nullptr, 0), "measure", file, "");
   std::string image(static_cast<std::size_t>(size), '\0');
-  detail::check(H5Fget_file_image(file.id(), image.data(), image.size()), "copy", file, "");
+  check(H5Fget_file_image(file.id(), image.data(), image.size()), "copy", file, "");
   return image;
 }
 
@@ -168,7 +163,7 @@ Handle open_file(const std::filesystem::path& path) {
 }
 
 void close_file(Handle file) {
-  const std::string name = name_of_file(file.id());
+  const std::string name = name_by(H5Fget_name, file.id());
   const hid_t id = file.id();
   H5Iinc_ref(id);
   if (H5Fflush(id, H5F_SCOPE_LOCAL) < 0 || H5Fclose(id) < 0)
@@ -184,22 +179,21 @@ Handle create_group(const Handle& parent, const std::string& name) {
   H5Pset_attr_creation_order(creation.id(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
   const hid_t group =
       H5Gcreate2(parent.id(), name.c_str(), H5P_DEFAULT, creation.id(), H5P_DEFAULT);
-  return Handle(detail::check(group, "create group", parent, name));
+  return Handle(check(group, "create group", parent, name));
 }
 
 Handle open_group(const Handle& parent, const std::string& name) {
   const hid_t group = H5Gopen2(parent.id(), name.c_str(), H5P_DEFAULT);
-  return Handle(detail::check(group, "open group", parent, name));
+  return Handle(check(group, "open group", parent, name));
 }
 
 bool has(const Handle& parent, const std::string& name) {
-  return detail::check(H5Lexists(parent.id(), name.c_str(), H5P_DEFAULT), "look up", parent, name) >
-         0;
+  return check(H5Lexists(parent.id(), name.c_str(), H5P_DEFAULT), "look up", parent, name) > 0;
 }
 
 bool is_group(const Handle& parent, const std::string& name) {
   const hid_t opened = H5Oopen(parent.id(), name.c_str(), H5P_DEFAULT);
-  const Handle object(detail::check(opened, "open", parent, name));
+  const Handle object(check(opened, "open", parent, name));
   return H5Iget_type(object.id()) == H5I_GROUP;
 }
 
@@ -211,13 +205,11 @@ std::vector<std::string> members(const Handle& group) {
     names.clear();
     status = H5Literate(group.id(), H5_INDEX_NAME, H5_ITER_INC, nullptr, collect_name, &names);
   }
-  detail::check(status, "list", group, "");
+  check(status, "list", group, "");
   return names;
 }
 
 namespace {
-
-using detail::check;
 
 /// Type of UTF-8 strings of any length, which h5py reads as str.
 Handle text_type() {
@@ -253,7 +245,7 @@ std::optional<std::string> value_of(const Handle& attribute) {
     return copy;
   }
   const std::size_t width = H5Tget_size(type.id());
-  detail::expect_in_file({}, width, attribute, "");
+  expect_in_file({}, width, attribute, "");
   std::string value(width, '\0');
   if (H5Aread(attribute.id(), type.id(), value.data()) < 0) return std::nullopt;
   return value.substr(0, value.find('\0'));
@@ -320,8 +312,7 @@ std::vector<std::uint64_t> numbers(const Handle& object, const std::string& name
   const Handle space(H5Aget_space(attribute.id()));
   const auto count =
       check(H5Sget_simple_extent_npoints(space.id()), "read attribute", object, name);
-  detail::expect_in_file(std::array{static_cast<hsize_t>(count)}, sizeof(std::uint64_t), object,
-                         name);
+  expect_in_file(std::array{static_cast<hsize_t>(count)}, sizeof(std::uint64_t), object, name);
   std::vector<std::uint64_t> values(static_cast<std::size_t>(count));
   check(H5Aread(attribute.id(), H5T_NATIVE_UINT64, values.data()), "read attribute", object, name);
   return values;
@@ -334,9 +325,6 @@ std::uint64_t number(const Handle& object, const std::string& name) {
 }
 
 namespace {
-
-using detail::check;
-using detail::native_type;
 
 Handle space_of(const Shape& shape) {
   if (shape.empty()) return Handle(H5Screate(H5S_SCALAR));
@@ -407,14 +395,6 @@ void write_text(const Handle& dataset, const std::string& text) {
         dataset, "");
 }
 
-std::string file_name(const Handle& object) {
-  const auto length = check(H5Fget_name(object.id(), nullptr, 0), "read the name of", object, "");
-  std::string name(static_cast<std::size_t>(length) + 1, '\0');
-  H5Fget_name(object.id(), name.data(), name.size());
-  name.pop_back();
-  return name;
-}
-
 std::optional<std::uint64_t> place(const Handle& dataset) {
   static_assert(std::is_same_v<Shape::value_type, hsize_t>);
   const haddr_t address = H5Dget_offset(dataset.id());
@@ -429,7 +409,7 @@ Shape shape(const Handle& dataset) {
   const auto rank = check(H5Sget_simple_extent_ndims(space.id()), "read the shape of", dataset, "");
   std::vector<hsize_t> dimensions(static_cast<std::size_t>(rank));
   H5Sget_simple_extent_dims(space.id(), dimensions.data(), nullptr);
-  detail::expect_in_file(dimensions, width_of(dataset), dataset, "");
+  expect_in_file(dimensions, width_of(dataset), dataset, "");
   return {dimensions.begin(), dimensions.end()};
 }
 

@@ -80,8 +80,6 @@ Handle create_text(const Handle& parent, const std::string& name, std::size_t wi
 Handle open_dataset(const Handle& parent, const std::string& name);
 void write(const Handle& dataset, Element element, const void* values);
 void write_text(const Handle& dataset, const std::string& text);
-/// Name of the file that an object is in, which is another one behind an external link.
-std::string file_name(const Handle& object);
 /// Offset of the elements in the file [byte]; nullopt if they are not contiguous.
 std::optional<std::uint64_t> place(const Handle& dataset);
 /// Size of the elements in the file [byte].
@@ -101,18 +99,5 @@ std::string read_text(const Handle& dataset);
 void make_scale(const Handle& dataset, const std::string& dimension);
 bool is_scale(const Handle& dataset);
 void attach_scale(const Handle& dataset, const Handle& scale, unsigned axis);
-
-namespace detail {
-/// Returns `status`, or throws "file: cannot <what> '/object/name'" if it is negative: StudyError
-/// if the file is open for reading only, otherwise RunError.
-std::int64_t check(std::int64_t status, const char* what, const Handle& object,
-                   const std::string& name);
-/// Throws StudyError if `elements` of `width` bytes are more than the file of `object` can hold,
-/// even if they are compressed.
-void expect_in_file(std::span<const unsigned long long> elements, std::size_t width,
-                    const Handle& object, const std::string& name);
-/// The HDF5 type of an element in the byte order of this machine. It must not be closed.
-std::int64_t native_type(Element element);
-}  // namespace detail
 
 }  // namespace montecarta::engine::h5

@@ -29,12 +29,6 @@ void number_runs(const StudyPlan& plan, ResultDescription& result) {
   std::iota(result.runs.begin(), result.runs.end(), plan.first_run);
 }
 
-std::vector<std::pair<double, double>> pairs(const std::vector<Eigen::Vector2d>& points) {
-  std::vector<std::pair<double, double>> result;
-  for (const Eigen::Vector2d& point : points) result.emplace_back(point.x(), point.y());
-  return result;
-}
-
 StoredCell describe(const Cell& cell, const StudyPlan& plan) {
   const RecordLayout layout(cell, plan.columns, plan.drives->itinerary(),
                             plan.columns.full_runs > 0 ? Detail::full : Detail::usual);
@@ -113,8 +107,8 @@ ResultDescription describe(const StudyPlan& plan, const TextPairs& provenance) {
     result.joint_scans = joint_scans_of(itinerary.scans(), plan.columns.joint_scans);
   }
   result.start = itinerary.start;
-  result.landmarks = pairs(itinerary.landmarks);
-  result.waypoints = pairs(itinerary.waypoints);
+  result.landmarks = itinerary.landmarks;
+  result.waypoints = itinerary.waypoints;
   result.references = itinerary.references;
   for (std::size_t run = 0; run < plan.drives->own_drives(); ++run) {
     result.drives.push_back(own_drive(plan.drives->itinerary_of(run)));
@@ -245,11 +239,8 @@ bool are_finite(const std::vector<double>& values) {
   return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
 }
 
-bool is_place(const Eigen::Vector2d& point) { return point.allFinite(); }
-
-bool are_finite(const std::vector<std::pair<double, double>>& points) {
-  return std::ranges::all_of(
-      points, [](const auto& p) { return std::isfinite(p.first) && std::isfinite(p.second); });
+bool are_finite(const std::vector<Eigen::Vector2d>& points) {
+  return std::ranges::all_of(points, [](const Eigen::Vector2d& p) { return p.allFinite(); });
 }
 
 template <class T>
@@ -330,7 +321,7 @@ void check_references(const std::vector<ReferencePath>& references, const Check&
     check.expect(path.position.size() == path.time.size() &&
                      (path.heading.empty() || path.heading.size() == path.time.size()),
                  "reference " + path.name + " has other fixes than times");
-    check.expect(are_finite(path.time) && std::ranges::all_of(path.position, is_place),
+    check.expect(are_finite(path.time) && are_finite(path.position),
                  "a fix of reference " + path.name + " is no place");
     const auto is_finite = [](const Eigen::Matrix3d& covariance) { return covariance.allFinite(); };
     check.expect((path.covariance.empty() || path.covariance.size() == path.time.size()) &&

@@ -66,13 +66,13 @@ struct ResultDescription {
   std::vector<std::uint64_t> runs;  ///< numbers of the runs in this file, increasing
   std::vector<double> times;        ///< [s] of the rows of `time`
   std::vector<double> scan_times;   ///< [s]
-  std::vector<std::uint32_t> scan_steps;             ///< step after which each scan is taken
-  std::vector<std::uint32_t> scan_rows;              ///< row of `time` at which each scan is taken
-  std::vector<std::uint32_t> joint_scans;            ///< scans at which joint estimates are stored
-  Pose start;                                        ///< before the first step
-  std::vector<std::pair<double, double>> landmarks;  ///< [m] true positions; empty if unknown
-  std::vector<std::pair<double, double>> waypoints;  ///< [m]; may be empty
-  std::vector<ReferencePath> references;             ///< of a recorded drive
+  std::vector<std::uint32_t> scan_steps;   ///< step after which each scan is taken
+  std::vector<std::uint32_t> scan_rows;    ///< row of `time` at which each scan is taken
+  std::vector<std::uint32_t> joint_scans;  ///< scans at which joint estimates are stored
+  Pose start;                              ///< before the first step
+  std::vector<Eigen::Vector2d> landmarks;  ///< [m] true positions; empty if unknown
+  std::vector<Eigen::Vector2d> waypoints;  ///< [m]; may be empty
+  std::vector<ReferencePath> references;   ///< of a recorded drive
   /// {run of the study} if every run has its own drive, else empty. With drives, `references` is
   /// empty, and the times are those of the longest drive.
   std::vector<OwnDrive> drives;

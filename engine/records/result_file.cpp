@@ -197,15 +197,10 @@ void ResultFile::read_truth(std::size_t i, std::span<double> out) const {
 }
 
 std::vector<Eigen::Vector2d> ResultFile::landmarks_of(std::size_t i) const {
-  std::vector<Eigen::Vector2d> points;
-  for (const auto& [x, y] : landmarks()) points.emplace_back(x, y);
+  std::vector<Eigen::Vector2d> points = landmarks();
   if (!has_own_landmarks()) return points;
-  std::vector<double> coordinates(2 * points.size());
   read_row("truth/landmarks", slabs_ ? &*slabs_->truth->landmarks : nullptr, Element::f64, i,
-           std::span(coordinates));
-  for (std::size_t l = 0; l < points.size(); ++l) {
-    points[l] = {coordinates[2 * l], coordinates[2 * l + 1]};
-  }
+           std::span(reinterpret_cast<double*>(points.data()), 2 * points.size()));
   return points;
 }
 

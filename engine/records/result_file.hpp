@@ -43,8 +43,8 @@ class ResultFile {
   const std::vector<double>& times() const { return description_.times; }
   const std::vector<std::uint32_t>& scan_rows() const { return description_.scan_rows; }
   const std::vector<double>& scan_times() const { return description_.scan_times; }
-  const std::vector<std::pair<double, double>>& landmarks() const { return description_.landmarks; }
-  const std::vector<std::pair<double, double>>& waypoints() const { return description_.waypoints; }
+  const std::vector<Eigen::Vector2d>& landmarks() const { return description_.landmarks; }
+  const std::vector<Eigen::Vector2d>& waypoints() const { return description_.waypoints; }
   const std::vector<ReferencePath>& references() const { return description_.references; }
   bool has_truth() const { return description_.has_truth; }
   const TextPairs& scenario() const { return description_.scenario; }

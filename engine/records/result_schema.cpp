@@ -15,9 +15,9 @@
 namespace montecarta::engine {
 namespace {
 
-using Points = std::vector<std::pair<double, double>>;
+using Points = std::vector<Eigen::Vector2d>;
 static_assert(sizeof(Pose) == 3 * sizeof(double));
-static_assert(sizeof(Points::value_type) == 2 * sizeof(double));
+static_assert(sizeof(Eigen::Vector2d) == 2 * sizeof(double));
 
 template <class T>
 constexpr Element element_of() {
@@ -86,11 +86,10 @@ class FieldWriter {
   void points(const std::string& one, const Points& points, const char* meaning) {
     if (points.empty()) return;
     counting_scale(one.c_str(), points.size(), ("identity of the " + one).c_str());
-    write((one + "s").c_str(), Element::f64, {points.size(), 2}, {one, "coordinate"},
-          {"m", meaning}, points.data());
+    positions((one + "s").c_str(), one.c_str(), points, meaning);
   }
-  void positions(const char* name, const char* dimension,
-                 const std::vector<Eigen::Vector2d>& positions, const char* meaning) {
+  void positions(const char* name, const char* dimension, const Points& positions,
+                 const char* meaning) {
     write(name, Element::f64, {positions.size(), 2}, {dimension, "coordinate"}, {"m", meaning},
           positions.data());
   }
@@ -176,13 +175,11 @@ class FieldReader {
     h5::read(h5::open_dataset(object_, name), Element::f64,
              std::as_writable_bytes(std::span(&pose, 1)));
   }
-  void points(const std::string& one, Points& points, const char* /*meaning*/) {
-    if (!h5::has(object_, one + "s")) return;
-    const auto flat = read_all<double>(one + "s");
-    for (std::size_t i = 0; i + 1 < flat.size(); i += 2) points.emplace_back(flat[i], flat[i + 1]);
+  void points(const std::string& one, Points& points, const char* meaning) {
+    positions((one + "s").c_str(), one.c_str(), points, meaning);
   }
-  void positions(const char* name, const char* /*dimension*/,
-                 std::vector<Eigen::Vector2d>& positions, const char* /*meaning*/) {
+  void positions(const char* name, const char* /*dimension*/, Points& positions,
+                 const char* /*meaning*/) {
     if (!h5::has(object_, name)) return;
     const auto flat = read_all<double>(name);
     for (std::size_t i = 0; i + 1 < flat.size(); i += 2)

@@ -210,7 +210,7 @@ TEST_F(RandomMaps, AreStoredRunByRun) {
   const auto first = file.landmarks_of(0), second = file.landmarks_of(1);
   ASSERT_EQ(first.size(), file.landmarks().size());
   for (std::size_t l = 0; l < first.size(); ++l) {
-    const Eigen::Vector2d world(file.landmarks()[l].first, file.landmarks()[l].second);
+    const Eigen::Vector2d world = file.landmarks()[l];
     EXPECT_LE((first[l] - world).norm(), 3.0);
     EXPECT_NE(first[l], second[l]);
   }

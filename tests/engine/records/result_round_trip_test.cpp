@@ -30,9 +30,9 @@ TEST_F(ResultRoundTrip, HandsBackTheStudyAndItsCellsInTheirOrder) {
   EXPECT_THAT(file.runs(), ElementsAre(0U, 1U, 2U));
   EXPECT_EQ(file.times(), plan_.drives->itinerary().step_time);
   EXPECT_EQ(file.scan_rows(), plan_.drives->itinerary().scan_step);
-  EXPECT_THAT(file.landmarks(),
-              ElementsAre(std::pair(1.0, 2.0), std::pair(3.0, -1.0), std::pair(5.0, 0.5)));
-  EXPECT_THAT(file.waypoints(), ElementsAre(std::pair(0.0, 0.0), std::pair(10.0, 0.0)));
+  EXPECT_THAT(file.landmarks(), ElementsAre(Eigen::Vector2d(1.0, 2.0), Eigen::Vector2d(3.0, -1.0),
+                                            Eigen::Vector2d(5.0, 0.5)));
+  EXPECT_THAT(file.waypoints(), ElementsAre(Eigen::Vector2d(0.0, 0.0), Eigen::Vector2d(10.0, 0.0)));
   EXPECT_THAT(file.provenance(),
               ElementsAre(std::pair<std::string, std::string>("host", "nowhere")));
   ASSERT_EQ(file.cells().size(), 2U);
