@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/core/capabilities.hpp"
 #include "engine/core/drive.hpp"
 #include "engine/core/slam_filter.hpp"
 #include "engine/namespaces.hpp"

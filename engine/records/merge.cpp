@@ -83,12 +83,6 @@ T read_value(const PosixFile& file, std::uint64_t offset) {
 
 }  // namespace
 
-ResultDescription describe_shard(const std::filesystem::path& path) {
-  const PosixFile readable(path,
-                           PosixFile::Mode::read);  // its errors are clearer than those of HDF5
-  return read_description(open_checked(path), path);
-}
-
 Shard make_shard(const std::filesystem::path& path, const ResultDescription& description) {
   const std::vector<std::uint64_t>& runs = description.runs;
   if (runs.back() - runs.front() != runs.size() - 1) {
@@ -142,10 +136,27 @@ void expect_whole(const PosixFile& file, const Shard& shard, std::uint64_t run,
                    " is damaged (its bytes do not fit its fingerprint): compute this shard anew");
 }
 
+std::vector<ByteRange> written_later(const ResultSlabs& slabs) {
+  std::vector<Slab> all = slabs_of_run(slabs);
+  all.insert(all.end(), {slabs.wall_seconds, slabs.sittings});
+  std::ranges::sort(all, {}, &Slab::offset);
+  std::vector<ByteRange> merged;
+  for (const Slab& slab : all) {
+    const std::uint64_t bytes = slab.runs * slab.run_bytes;
+    if (bytes == 0) continue;
+    if (!merged.empty() && merged.back().offset + merged.back().length == slab.offset) {
+      merged.back().length += bytes;
+    } else {
+      merged.push_back({slab.offset, bytes});
+    }
+  }
+  return merged;
+}
+
 std::uint64_t copy_runs(const PosixFile& from, const Shard& shard, RunSpan runs,
-                        const PosixFile& to, const ResultSlabs& slabs) {
+                        const PosixFile& to, const ResultSlabs& slabs, std::size_t index) {
   const std::size_t first = shard.index(runs.first);
-  copy_slabs({from, slabs_of_run(shard.slabs), first}, {to, slabs_of_run(slabs), runs.first},
+  copy_slabs({from, slabs_of_run(shard.slabs), first}, {to, slabs_of_run(slabs), index},
              runs.count);
   std::vector<RunStatus> status(runs.count);
   std::uint64_t failed = 0;
@@ -239,7 +250,7 @@ void expect_mergeable(const fs::path& out, const std::vector<fs::path>& shards, 
 std::vector<Shard> open_shards(const std::vector<fs::path>& paths, ResultDescription& first) {
   std::vector<Shard> shards;
   for (const fs::path& path : paths) {
-    ResultDescription description = describe_shard(path);
+    ResultDescription description = read_description(path);
     if (shards.empty()) first = description;
     if (const auto different = difference(first, description, path)) throw StudyError(*different);
     shards.push_back(make_shard(path, description));
@@ -257,11 +268,11 @@ std::vector<std::string> ranges(const std::vector<std::uint64_t>& runs) {
   return found;
 }
 
-/// Throws StudyError that lists the missing runs and the commands for the first gaps.
-[[noreturn]] void refuse_gaps(const std::vector<std::uint64_t>& missing, std::uint64_t runs,
-                              const fs::path& shard) {
+}  // namespace
+
+void refuse_gaps(const std::vector<std::string>& gaps, std::uint64_t missing, std::uint64_t runs,
+                 const fs::path& shard) {
   std::string named, commands;
-  const std::vector<std::string> gaps = ranges(missing);
   for (std::size_t i = 0; i < gaps.size(); ++i) {
     named += (i == 0 ? "" : ", ") + gaps[i];
     if (i < 3)
@@ -269,12 +280,14 @@ std::vector<std::string> ranges(const std::vector<std::uint64_t>& runs) {
           "\n  montecarta run study.ini -o missing_" + std::to_string(i) + ".h5 --runs " + gaps[i];
   }
   throw StudyError("merge: runs " + named + " are in none of the shards (" +
-                   std::to_string(missing.size()) + " of " + std::to_string(runs) +
+                   std::to_string(missing) + " of " + std::to_string(runs) +
                    " missing; nothing was written): compute them, then merge again:\n  montecarta "
                    "info " +
                    shard.string() + " --text > study.ini" + commands +
                    (gaps.size() > 3 ? "\n  ..." : ""));
 }
+
+namespace {
 
 /// Chooses the shard from which each run of the study is copied. Throws StudyError if a run differs
 /// between two shards.
@@ -296,7 +309,7 @@ std::vector<std::size_t> choose_sources(const std::vector<Shard>& shards, std::u
   for (std::uint64_t run = 0; run < runs; ++run) {
     if (source[run] == none) missing.push_back(run);
   }
-  if (!missing.empty()) refuse_gaps(missing, runs, shards.front().path);
+  if (!missing.empty()) refuse_gaps(ranges(missing), missing.size(), runs, shards.front().path);
   return source;
 }
 
@@ -339,7 +352,7 @@ void copy_runs(const std::vector<Shard>& shards, const std::vector<std::size_t>&
     // which must match the bytes in both shards.
     for (std::uint64_t run : shards[s].complete_runs) expect_whole(from, shards[s], run, buffer);
     for (const RunSpan& runs : given_by(shards[s], s, source))
-      summary.failed += copy_runs(from, shards[s], runs, file, slabs);
+      summary.failed += copy_runs(from, shards[s], runs, file, slabs, runs.first);
   }
   double seconds = 0.0;
   for (const Shard& shard : shards) seconds += shard.wall_seconds;
@@ -351,7 +364,7 @@ void copy_runs(const std::vector<Shard>& shards, const std::vector<std::size_t>&
 MergeSummary merge_results(const fs::path& out, const std::vector<fs::path>& paths,
                            Existing existing) {
   expect_mergeable(out, paths, existing);
-  ResultDescription description = describe_shard(paths.front());
+  ResultDescription description = read_description(paths.front());
   if (description.sums) return merge_groups(out, paths, 0, description.study_runs, existing);
   const std::vector<Shard> shards = open_shards(paths, description);
   MergeSummary summary;
@@ -359,21 +372,10 @@ MergeSummary merge_results(const fs::path& out, const std::vector<fs::path>& pat
   summary.cells = description.cells.size();
   const auto source = choose_sources(shards, description.study_runs, summary);
   note_builds(shards, summary);
-  fs::path temporary = out;
-  temporary += ".merging";
-  const ResultDescription whole = whole_study(description, shards.size());
-  PosixFile file = lay_out_new(temporary, whole);
-  try {
-    copy_runs(shards, source, file, find_slabs(temporary, whole), summary);
-    file.sync();
-    summary.bytes = file.size();
-    file.rename(
-        out, existing == Existing::replace ? PosixFile::Target::replace : PosixFile::Target::keep);
-  } catch (...) {
-    std::error_code ignored;
-    fs::remove(temporary, ignored);
-    throw;
-  }
+  const auto fill = [&](const PosixFile& file, const ResultSlabs& slabs) {
+    copy_runs(shards, source, file, slabs, summary);
+  };
+  summary.bytes = write_at_once(out, whole_study(description, shards.size()), fill, existing);
   return summary;
 }
 

@@ -3,6 +3,7 @@
 
 #include "engine/records/result_layout.hpp"
 #include "engine/records/result_writer.hpp"
+#include "engine/records/seal.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -24,8 +25,6 @@ struct Shard {
   std::size_t index(std::uint64_t run) const { return run - first_run; }
 };
 
-/// Reads the description of a shard. Throws StudyError if the file at `path` is no result.
-ResultDescription describe_shard(const std::filesystem::path& path);
 Shard make_shard(const std::filesystem::path& path, const ResultDescription& description);
 
 /// Throws StudyError if the two shards hold different bytes for run `run`, which both have.
@@ -33,22 +32,30 @@ void expect_equal(const Shard& a, const Shard& b, std::uint64_t run);
 /// Throws StudyError if a run does not match its fingerprints.
 void expect_whole(const PosixFile& file, const Shard& shard, std::uint64_t run,
                   std::vector<std::byte>& buffer);
+/// The ranges of a file that are written after it is laid out, increasing and disjoint.
+std::vector<ByteRange> written_later(const ResultSlabs& slabs);
+
 /// Consecutive runs of the study.
 struct RunSpan {
   std::uint64_t first = 0;
   std::size_t count = 0;
 };
 
-/// Copies all cells and the true paths of some runs to a file of the whole study. Returns the
-/// number of failed runs of cells.
+/// Copies all cells and the true paths of some runs to those from run index `index` on of another
+/// file. Returns the number of failed runs of cells.
 std::uint64_t copy_runs(const PosixFile& from, const Shard& shard, RunSpan runs,
-                        const PosixFile& to, const ResultSlabs& slabs);
+                        const PosixFile& to, const ResultSlabs& slabs, std::size_t index);
 /// Copies one run of one cell between files with the same runs. The status is copied last.
 void copy_cell(const PosixFile& from, const CellSlabs& source, const PosixFile& to,
                const CellSlabs& sink, std::size_t run_index);
 /// Copies the true path of one run, if it is stored.
 void copy_truth(const PosixFile& from, const ResultSlabs& source, const PosixFile& to,
                 const ResultSlabs& sink, std::size_t run_index);
+
+/// Throws StudyError with the missing runs, as ranges such as "3:5", and the commands that compute
+/// the first of them. `missing` is their number, of `runs` runs.
+[[noreturn]] void refuse_gaps(const std::vector<std::string>& gaps, std::uint64_t missing,
+                              std::uint64_t runs, const std::filesystem::path& shard);
 
 /// Summary of a merge.
 struct MergeSummary {

@@ -16,13 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-fs::path with_suffix(fs::path path, const char* suffix) { return path += suffix; }
-
-bool is_folder(const fs::path& path) {
-  std::error_code ignored;
-  return fs::is_directory(path, ignored);
-}
-
 void refuse_existing(const fs::path& path) {
   expect_free(path);
   if (is_there(part_of(path))) {
@@ -32,8 +25,7 @@ void refuse_existing(const fs::path& path) {
   }
 }
 
-}  // namespace
-
+/// Throws RunError if less than `bytes` are free beside `path`.
 void expect_room(const fs::path& path, double bytes) {
   std::error_code ignored;
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
@@ -44,17 +36,19 @@ void expect_room(const fs::path& path, double bytes) {
                  " are free: free space, choose another disk, or store fewer runs or columns");
 }
 
+}  // namespace
+
 PosixFile lay_out_new(const fs::path& path, const ResultDescription& description,
-                      const std::function<void(const PosixFile&, const ResultSlabs&)>& fill) {
+                      const Fill& fill) {
   PosixFile file(path, PosixFile::Mode::create);
   file.lock();
   try {
     expect_room(path, description.bytes());
     lay_out(path, description);
+    file.reserve();
     const ResultSlabs slabs = find_slabs(path, description);
     if (fill) fill(file, slabs);
     put_seal(file, written_later(slabs));
-    file.reserve();
     file.sync();
   } catch (...) {
     std::error_code ignored;
@@ -64,21 +58,42 @@ PosixFile lay_out_new(const fs::path& path, const ResultDescription& description
   return file;
 }
 
+std::uint64_t write_at_once(const fs::path& path, const ResultDescription& description,
+                            const Fill& fill, Existing existing) {
+  fs::path draft = path;
+  PosixFile file = lay_out_new(draft += ".new", description, fill);
+  file.rename(path, existing);
+  return file.size();
+}
+
+namespace {
+
+/// Lays out the empty result `work`, in which every run is missing.
+OpenResult new_work(const fs::path& work, const ResultDescription& description, Existing existing) {
+  fs::path draft = work;
+  OpenResult result{lay_out_new(draft += ".new", description), {}, {}, {}, {}};
+  result.file.rename(work, existing);
+  result.slabs = find_slabs(work, description);
+  result.status.assign(description.cells.size(), std::vector<RunStatus>(description.runs.size()));
+  result.truth_stored.assign(description.runs.size(), false);
+  return result;
+}
+
+}  // namespace
+
 OpenResult create_result(const fs::path& path, const StudyPlan& plan, const TextPairs& provenance,
                          Existing existing) {
-  if (is_folder(path)) throw StudyError(path.string() + ": is a folder: name a file in it");
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored))
+    throw StudyError(path.string() + ": is a folder: name a file in it");
   if (existing == Existing::refuse) refuse_existing(path);
   ResultDescription description = describe(plan, provenance);
   if (is_there(path)) description.provenance.emplace_back(format::kReplaces, "an older result");
   std::optional<PosixFile> replaced;  // locked, so no process is writing the replaced work
   if (is_there(part_of(path))) replaced.emplace(part_of(path), PosixFile::Mode::write).lock();
-  OpenResult result{lay_out_new(with_suffix(part_of(path), ".new"), description), {}, {}, {}, {}};
-  result.file.rename(part_of(path),
-                     replaced ? PosixFile::Target::replace : PosixFile::Target::keep);
-  result.slabs = find_slabs(result.file.path(), description);
-  result.status.assign(plan.cells.size(), std::vector<RunStatus>(plan.runs_here()));
-  result.truth_stored.assign(plan.runs_here(), false);
-  if (existing == Existing::replace) result.target = PosixFile::Target::replace;
+  OpenResult result =
+      new_work(part_of(path), description, replaced ? Existing::replace : Existing::refuse);
+  result.existing = existing;
   return result;
 }
 
@@ -88,7 +103,7 @@ namespace fs = std::filesystem;
 
 ResultDescription read_description_of(const fs::path& path) {
   try {
-    return read_description(open_checked(path), path);
+    return read_description(path);
   } catch (const std::runtime_error& error) {
     throw StudyError(path.string() + ": cannot be resumed (" + error.what() +
                      "): start afresh with --force");
@@ -114,7 +129,7 @@ bool begun_with_force(const ResultDescription& stored) {
 
 bool holds_the_same(const fs::path& path, const ResultDescription& planned) {
   try {
-    const ResultDescription stored = read_description(open_checked(path), path);
+    const ResultDescription stored = read_description(path);
     return stored.runs == planned.runs && !difference(planned, stored, path);
   } catch (const std::runtime_error&) {
     return false;  // no result but another file of the user, which must not be replaced
@@ -203,8 +218,7 @@ void expect_finished(const OpenResult& result) {
                    part_of(path).string() + ", then continue with --resume");
 }
 
-}  // namespace
-
+/// Opens a result under its final name. Throws StudyError if runs are missing.
 OpenResult finished_result(const fs::path& path, const ResultDescription& planned) {
   ResultDescription stored;
   OpenResult finished = open_existing(path, PosixFile::Mode::read, planned, stored);
@@ -213,12 +227,13 @@ OpenResult finished_result(const fs::path& path, const ResultDescription& planne
   return finished;
 }
 
+/// Opens unfinished work that will become `path`, and marks damaged runs as missing.
 OpenResult continued_work(const fs::path& work, const fs::path& path,
                           const ResultDescription& planned) {
   ResultDescription stored;
   OpenResult result = open_existing(work, PosixFile::Mode::write, planned, stored);
   expect_replaceable(path, planned, stored);
-  if (is_there(path)) result.target = PosixFile::Target::replace;
+  if (is_there(path)) result.existing = Existing::replace;
   const std::size_t torn = reset_torn_runs(result);
   if (torn > 0) {
     result.notes.push_back(std::to_string(torn) +
@@ -229,6 +244,8 @@ OpenResult continued_work(const fs::path& work, const fs::path& path,
   log_session(result, differences(stored.provenance, planned.provenance));
   return result;
 }
+
+}  // namespace
 
 OpenResult resume_result(const fs::path& path, const StudyPlan& plan, const TextPairs& provenance) {
   const bool begun = is_there(part_of(path));
@@ -274,7 +291,7 @@ std::optional<ResultDescription> description_of(const fs::path& work,
                                                 const ResultDescription& planned) {
   std::optional<ResultDescription> stored;
   try {
-    stored = read_description(open_checked(work), work);
+    stored = read_description(work);
   } catch (const std::runtime_error&) {
     return std::nullopt;
   }
@@ -293,18 +310,6 @@ bool take_checkpoint(const fs::path& path, const fs::path& own, const ResultDesc
   std::error_code failed;
   fs::rename(part_of(path), own, failed);
   return !failed || is_there(own);
-}
-
-OpenResult new_attempt(const fs::path& path, const fs::path& own,
-                       const ResultDescription& planned) {
-  fs::path draft = own;
-  OpenResult result{lay_out_new(draft += ".new", planned), {}, {}, {}, {}};
-  result.file.rename(own, PosixFile::Target::keep);
-  result.slabs = find_slabs(own, planned);
-  result.status.assign(planned.cells.size(), std::vector<RunStatus>(planned.runs.size()));
-  result.truth_stored.assign(planned.runs.size(), false);
-  if (is_there(path)) result.target = PosixFile::Target::replace;
-  return result;
 }
 
 /// Copies undamaged runs that are missing here from the file of another attempt. Returns the number
@@ -351,8 +356,9 @@ OpenResult attempt_result(const fs::path& path, const StudyPlan& plan,
   const ResultDescription planned = describe(plan, provenance);
   if (is_there(path)) return finished_result(path, planned);
   const fs::path own = own_name(path);
-  OpenResult result = take_checkpoint(path, own, planned) ? continued_work(own, path, planned)
-                                                          : new_attempt(path, own, planned);
+  OpenResult result = take_checkpoint(path, own, planned)
+                          ? continued_work(own, path, planned)
+                          : new_work(own, planned, Existing::refuse);
   result.claim = Claim::attempt;
   for (const fs::path& other : attempts_at(path)) {
     if (other != own && other.extension() != ".new") copy_complete_runs(other, planned, result);
@@ -368,14 +374,14 @@ void rename_finished(OpenResult& attempt, const fs::path& path) {
   }
   if (is_there(part_of(path))) return;
   try {
-    attempt.file.rename(part_of(path), PosixFile::Target::keep);
+    attempt.file.rename(part_of(path), Existing::refuse);
   } catch (const std::runtime_error&) {  // the next attempt finds it under its own name
   }
 }
 
 void complete_attempt(OpenResult& attempt, const fs::path& path) {
   try {
-    if (!is_there(path)) attempt.file.rename(path, PosixFile::Target::keep);
+    if (!is_there(path)) attempt.file.rename(path, Existing::refuse);
   } catch (const std::runtime_error&) {
     if (!is_there(path)) throw;  // another attempt was first and has the same bytes
   }

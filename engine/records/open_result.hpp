@@ -3,7 +3,6 @@
 
 #include "engine/records/posix_file.hpp"
 #include "engine/records/result_layout.hpp"
-#include "engine/records/result_writer.hpp"
 
 #include <filesystem>
 #include <functional>
@@ -21,21 +20,25 @@ enum class Claim : std::uint8_t { sole, attempt };
 struct OpenResult {
   PosixFile file;  ///< OUT.h5.part, or OUT.h5 itself if it was complete already
   ResultSlabs slabs;
-  std::vector<std::vector<RunStatus>> status;          ///< [cell][run index]
-  std::vector<bool> truth_stored;                      ///< [run index]
-  std::vector<std::string> notes;                      ///< messages for the user
-  PosixFile::Target target = PosixFile::Target::keep;  ///< for an older OUT.h5 when finishing
+  std::vector<std::vector<RunStatus>> status;  ///< [cell][run index]
+  std::vector<bool> truth_stored;              ///< [run index]
+  std::vector<std::string> notes;              ///< messages for the user
+  Existing existing = Existing::refuse;        ///< of an older OUT.h5 when finishing
   Claim claim = Claim::sole;
 };
 
-/// Throws RunError if less than `bytes` are free beside `path`.
-void expect_room(const std::filesystem::path& path, double bytes);
+/// Writes numbers to a file that is laid out.
+using Fill = std::function<void(const PosixFile&, const ResultSlabs&)>;
 
 /// Lays out an empty result at the temporary name `path` and returns it locked. `fill` writes the
 /// part that the seal covers. Leaves no file if that fails.
-PosixFile lay_out_new(
-    const std::filesystem::path& path, const ResultDescription& description,
-    const std::function<void(const PosixFile&, const ResultSlabs&)>& fill = nullptr);
+PosixFile lay_out_new(const std::filesystem::path& path, const ResultDescription& description,
+                      const Fill& fill = nullptr);
+
+/// Writes a result of which all numbers are known to a temporary name, then gives it its name.
+/// Returns its size [byte].
+std::uint64_t write_at_once(const std::filesystem::path& path, const ResultDescription& description,
+                            const Fill& fill, Existing existing);
 
 /// Why `b`, which describes the file `path`, is not of the same study and layout as `a`, worded
 /// "place: problem (why): remedy"; nullopt if it is. Their runs may differ.
@@ -44,12 +47,6 @@ std::optional<std::string> difference(const ResultDescription& a, const ResultDe
 
 /// Differences between two builds, worded for the user; empty if both round alike.
 std::vector<std::string> build_differences(const TextPairs& a, const TextPairs& b);
-
-/// Opens a result under its final name. Throws StudyError if runs are missing.
-OpenResult finished_result(const std::filesystem::path& path, const ResultDescription& planned);
-/// Opens unfinished work that will become `path`, and marks damaged runs as missing.
-OpenResult continued_work(const std::filesystem::path& work, const std::filesystem::path& path,
-                          const ResultDescription& planned);
 
 /// See ResultWriter::create.
 OpenResult create_result(const std::filesystem::path& path, const StudyPlan& plan,

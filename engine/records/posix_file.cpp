@@ -190,9 +190,9 @@ bool PosixFile::still_has_its_name() const {
          opened.st_ino == named.st_ino && opened.st_dev == named.st_dev;
 }
 
-void PosixFile::rename(const std::filesystem::path& name, Target target) {
+void PosixFile::rename(const std::filesystem::path& name, Existing existing) {
   int status = -1;
-  if (target == Target::keep) {
+  if (existing == Existing::refuse) {
     status = ::renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, name.c_str(), RENAME_NOREPLACE);
     if (status != 0 && errno == EEXIST)
       throw StudyError(name.string() +

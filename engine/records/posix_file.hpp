@@ -11,6 +11,9 @@
 
 namespace montecarta::engine {
 
+/// The treatment of an existing file of the same name.
+enum class Existing { refuse, replace };
+
 /// A file that is read and written at offsets by any thread. Interrupted and partial transfers are
 /// continued. Throws RunError with a remedy if the disk fails.
 class PosixFile {
@@ -38,10 +41,9 @@ class PosixFile {
   /// Locks the file against other montecarta processes that write, until it is closed. Readers are
   /// not excluded. Throws StudyError if another process has locked it.
   void lock() const;
-  /// Gives the file its final name and writes that to the disk. An existing file is replaced, or
-  /// with `keep` StudyError is thrown.
-  enum class Target { replace, keep };
-  void rename(const std::filesystem::path& name, Target target);
+  /// Gives the file its final name and writes that to the disk. Throws StudyError if another file
+  /// has that name and may not be replaced.
+  void rename(const std::filesystem::path& name, Existing existing);
 
  private:
   bool still_has_its_name() const;

@@ -5,6 +5,7 @@
 #include "engine/records/fingerprint.hpp"
 #include "engine/records/result_layout.hpp"
 #include "engine/records/run_record.hpp"
+#include "engine/records/seal.hpp"
 #include "engine/visible_text.hpp"
 
 #include <algorithm>
@@ -228,6 +229,11 @@ ResultDescription read_description(const h5::Handle& file, const std::filesystem
   result.sums = read_summed_runs(file, result.cells);
   check_description(result, path);
   return result;
+}
+
+ResultDescription read_description(const std::filesystem::path& path) {
+  check_seal(path);
+  return read_description(h5::open_file(path), path);
 }
 
 namespace {

@@ -10,8 +10,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <functional>
-#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -72,31 +70,6 @@ bool run_is_whole(const PosixFile& file, const CellSlabs& cell, std::size_t run_
 bool truth_is_whole(const PosixFile& file, const ResultSlabs& slabs, std::size_t run_index,
                     std::vector<std::byte>& buffer);
 
-/// Attributes that describe a dataset to readers.
-struct Label {
-  std::string units;
-  std::string long_name;
-};
-
-/// Dimension scales by the name of the dimension.
-using Scales = std::map<std::string, h5::Handle, std::less<>>;
-
-/// Adds a dataset with its label. The scales of its dimensions must exist.
-h5::Handle add_dataset(const h5::Handle& parent, const std::string& name, Element element,
-                       const h5::Shape& shape, const std::vector<std::string>& dimensions,
-                       const Label& label, const Scales& scales);
-/// Adds a text, padded with zeros to `width` bytes.
-h5::Handle add_text(const h5::Handle& parent, const std::string& name, const std::string& text,
-                    std::size_t width, const Label& label);
-/// Creates the scale of dimension `name`, and replaces any other of that name in `scales`.
-void add_scale(const h5::Handle& parent, const std::string& name, const std::vector<double>& values,
-               const Label& label, Scales& scales);
-void add_scale(const h5::Handle& parent, const std::string& name,
-               const std::vector<std::uint64_t>& values, const Label& label, Scales& scales);
-/// Creates a scale with the numbers 0, 1, ..., length - 1.
-void add_index_scale(const h5::Handle& parent, const std::string& name, std::size_t length,
-                     const Label& label, Scales& scales);
-
 /// Names and widths that are shared by writer and reader of a result file (analysis/FORMAT.md).
 namespace format {
 inline constexpr std::string_view kFiletype = "montecarta-results";
@@ -120,11 +93,6 @@ inline constexpr std::string_view kReplaces = "replaces";
 /// attributes and scales, and the final place of every dataset. Throws RunError if the disk fails.
 void lay_out(const std::filesystem::path& path, const ResultDescription& description);
 
-/// Writes the description to a new file. `add_runs` adds truth, cells and timing, when their scales
-/// are in `scales`.
-void write_schema(const h5::Handle& file, const ResultDescription& description, Scales& scales,
-                  const std::function<void()>& add_runs);
-
 /// Reads the description. Throws StudyError if a required part cannot be read.
 void read_schema(const h5::Handle& file, ResultDescription& description);
 
@@ -136,5 +104,7 @@ void check_description(const ResultDescription& description, const std::filesyst
 /// a known major version, and RunError if a required part cannot be read or is inconsistent
 /// (check_description()).
 ResultDescription read_description(const h5::Handle& file, const std::filesystem::path& path);
+/// The same, of a file that is not open yet, after checking its seal.
+ResultDescription read_description(const std::filesystem::path& path);
 
 }  // namespace montecarta::engine

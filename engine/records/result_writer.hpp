@@ -3,19 +3,20 @@
 
 #include "engine/core/drive.hpp"
 #include "engine/core/plan.hpp"
+#include "engine/records/fingerprint.hpp"
+#include "engine/records/open_result.hpp"
 #include "engine/records/result_description.hpp"
 #include "engine/records/run_record.hpp"
 
+#include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
-#include <memory>
+#include <functional>
 #include <string>
 #include <vector>
 
 namespace montecarta::engine {
-
-/// The treatment of an existing file of the same name.
-enum class Existing { refuse, replace };
 
 /// Writes the result file of a plan. Unfinished work is in OUT.h5.part, which any HDF5 reader can
 /// open at any time; finish() renames it. A thread writes its run directly to its place in the
@@ -42,13 +43,11 @@ class ResultWriter {
   /// becomes OUT.h5. Opens OUT.h5 if it is complete, like resume().
   static ResultWriter attempt(const std::filesystem::path& path, const StudyPlan& plan,
                               const TextPairs& provenance);
-  ~ResultWriter();
-  ResultWriter(ResultWriter&&) noexcept;
 
   /// Status of this run of this cell in the file. Thread-safe.
   RunStatus status(std::size_t cell, std::size_t run_index) const;
   /// Messages for the user about a resumption ("3 runs were damaged ..."), one sentence each.
-  const std::vector<std::string>& notes() const;
+  const std::vector<std::string>& notes() const { return result_.notes; }
 
   /// Stores the true path of a run. Must be called once for every drive, before write().
   /// Thread-safe.
@@ -58,7 +57,7 @@ class ResultWriter {
   /// Marks a run as not needed, permanently. Must be called between rounds.
   void spare(std::size_t cell, std::size_t run_index);
   /// The file with the runs stored so far, for reading.
-  const std::filesystem::path& unfinished() const;
+  const std::filesystem::path& unfinished() const { return result_.file.path(); }
   /// Adds to the wall time of all sessions in /timing [s].
   void note_wall_seconds(double seconds);
 
@@ -69,9 +68,19 @@ class ResultWriter {
   void finish();
 
  private:
-  struct Work;
-  explicit ResultWriter(std::unique_ptr<Work> work);
-  std::unique_ptr<Work> work_;
+  ResultWriter(const std::filesystem::path& path, OpenResult result, const StudyPlan& plan);
+  bool is_finished() const { return result_.file.path() == path_; }
+  void write_poses(std::size_t run_index, const Drive& drive, Fingerprint& fingerprint) const;
+  void write_landmarks(std::size_t run_index, Fingerprint& fingerprint) const;
+
+  std::filesystem::path path_;  ///< final name
+  OpenResult result_;
+  bool scans_only_;
+  std::vector<std::uint32_t> scan_steps_;
+  std::function<std::vector<Eigen::Vector2d>(std::uint64_t)> own_landmarks_;
+  std::uint64_t first_run_;
+  std::vector<std::vector<std::atomic<RunStatus>>> status_;  ///< [cell][run index]
+  std::vector<std::atomic<bool>> truth_stored_;              ///< [run index]
 };
 
 }  // namespace montecarta::engine

@@ -128,39 +128,7 @@ Words read_seal(const PosixFile& file, std::uint64_t begin, std::uint64_t end) {
   return seal;
 }
 
-void add_range(const Slab& slab, std::vector<ByteRange>& ranges) {
-  const std::uint64_t bytes = slab.runs * slab.run_bytes;
-  if (bytes > 0) ranges.push_back({slab.offset, bytes});
-}
-
 }  // namespace
-
-std::vector<ByteRange> written_later(const ResultSlabs& slabs) {
-  std::vector<ByteRange> all;
-  for (const Slab& slab : {slabs.wall_seconds, slabs.sittings}) add_range(slab, all);
-  if (slabs.truth) {
-    add_range(slabs.truth->pose, all);
-    add_range(slabs.truth->fingerprint, all);
-    if (slabs.truth->landmarks) add_range(*slabs.truth->landmarks, all);
-  }
-  for (const CellSlabs& cell : slabs.cells) {
-    for (const Slab& slab : cell.columns) add_range(slab, all);
-    for (const Slab& slab : {cell.failure_reason, cell.failure_step, cell.fingerprint,
-                             cell.full_fingerprint, cell.cpu_seconds, cell.status}) {
-      add_range(slab, all);
-    }
-  }
-  std::ranges::sort(all, {}, &ByteRange::offset);
-  std::vector<ByteRange> merged;
-  for (const ByteRange& range : all) {
-    if (!merged.empty() && merged.back().offset + merged.back().length == range.offset) {
-      merged.back().length += range.length;
-    } else {
-      merged.push_back(range);
-    }
-  }
-  return merged;
-}
 
 void put_seal(const PosixFile& file, const std::vector<ByteRange>& open) {
   const std::uint64_t begin = file.size();
@@ -196,11 +164,6 @@ Seal check_seal(const std::filesystem::path& path) {
     refuse(path, "bytes that never change once it is laid out do not fit their fingerprint");
   }
   return Seal::holds;
-}
-
-h5::Handle open_checked(const std::filesystem::path& path) {
-  check_seal(path);
-  return h5::open_file(path);
 }
 
 }  // namespace montecarta::engine

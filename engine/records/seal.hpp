@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/records/h5.hpp"
 #include "engine/records/posix_file.hpp"
-#include "engine/records/result_layout.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -21,9 +19,6 @@ struct ByteRange {
   std::uint64_t length = 0;
 };
 
-/// The ranges that are written after a file is laid out, increasing and disjoint.
-std::vector<ByteRange> written_later(const ResultSlabs& slabs);
-
 /// Appends the seal to a new file. Its fingerprint leaves out the ranges `open`.
 void put_seal(const PosixFile& file, const std::vector<ByteRange>& open);
 
@@ -33,8 +28,5 @@ enum class Seal : std::uint8_t {
 };
 /// Throws StudyError if the file is not HDF5, is cut short, or does not match its seal.
 Seal check_seal(const std::filesystem::path& path);
-
-/// Opens a result file for reading after checking its seal. Throws like check_seal().
-h5::Handle open_checked(const std::filesystem::path& path);
 
 }  // namespace montecarta::engine

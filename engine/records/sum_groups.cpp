@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <array>
-#include <memory>
 #include <numeric>
 #include <optional>
 
@@ -72,27 +71,13 @@ std::vector<std::uint64_t> read_sums(const PosixFile& file, const SumGroup& grou
 
 namespace {
 
-/// A file with all or more of the first runs that a result with sums has.
-struct FirstRuns {
-  const PosixFile& file;
-  const ResultSlabs& slabs;
-};
-
-void copy_first_runs(const FirstRuns& from, const ResultDescription& description,
-                     const PosixFile& to, const ResultSlabs& slabs) {
+/// Copies the runs that a result with sums has from a file that has them, and perhaps more.
+void copy_first_runs(const Shard& from, const ResultDescription& description, const PosixFile& to,
+                     const ResultSlabs& slabs) {
+  const PosixFile file(from.path, PosixFile::Mode::read);
   std::vector<std::byte> buffer;
-  for (std::size_t i = 0; i < description.runs.size(); ++i) {
-    bool is_whole = truth_is_whole(from.file, from.slabs, i, buffer);
-    for (const CellSlabs& cell : from.slabs.cells)
-      is_whole = is_whole && run_is_whole(from.file, cell, i, buffer);
-    if (!is_whole) {
-      throw StudyError(from.file.path().string() + ": run " + std::to_string(description.runs[i]) +
-                       " is damaged (its bytes do not fit its fingerprint): compute it anew");
-    }
-    copy_truth(from.file, from.slabs, to, slabs, i);
-    for (std::size_t c = 0; c < description.cells.size(); ++c)
-      copy_cell(from.file, from.slabs.cells[c], to, slabs.cells[c], i);
-  }
+  for (const std::uint64_t run : description.runs) expect_whole(file, from, run, buffer);
+  copy_runs(file, from, {description.runs.front(), description.runs.size()}, to, slabs, 0);
 }
 
 /// The description of a result with sums, from one that has its first runs and perhaps more.
@@ -104,17 +89,6 @@ ResultDescription with_sums(ResultDescription description, SummedRuns sums) {
   return description;
 }
 
-/// Lays out a result under a temporary name, fills it and gives it its name.
-std::uint64_t write_result(const fs::path& out, const ResultDescription& description,
-                           const std::function<void(const PosixFile&, const ResultSlabs&)>& fill,
-                           PosixFile::Target target) {
-  fs::path temporary = out;
-  temporary += ".new";
-  PosixFile file = lay_out_new(temporary, description, fill);
-  file.rename(out, target);
-  return file.size();
-}
-
 void write_seconds(const PosixFile& file, const ResultSlabs& slabs, double seconds) {
   file.write_at(slabs.wall_seconds.offset, std::as_bytes(std::span(&seconds, 1)));
 }
@@ -122,16 +96,15 @@ void write_seconds(const PosixFile& file, const ResultSlabs& slabs, double secon
 }  // namespace
 
 void write_group(const fs::path& out, const fs::path& rows, std::span<const NewGroup> cells) {
-  const ResultDescription all = describe_shard(rows);
+  const ResultDescription all = read_description(rows);
   const Shard shard = make_shard(rows, all);
   SummedRuns sums{all.runs.front(), all.runs.back() + 1, {}};
   for (const NewGroup& cell : cells) sums.words.push_back(kGroupHeadWords + cell.sums.size());
   const ResultDescription description = with_sums(all, std::move(sums));
-  const PosixFile from(rows, PosixFile::Mode::read);
-  write_result(
+  write_at_once(
       out, description,
       [&](const PosixFile& file, const ResultSlabs& slabs) {
-        copy_first_runs({from, shard.slabs}, description, file, slabs);
+        copy_first_runs(shard, description, file, slabs);
         for (std::size_t c = 0; c < cells.size(); ++c) {
           const auto head = head_words(cells[c].head);
           file.write_at(slabs.sums[c].offset, std::as_bytes(std::span(head)));
@@ -142,39 +115,34 @@ void write_group(const fs::path& out, const fs::path& rows, std::span<const NewG
         }
         write_seconds(file, slabs, shard.wall_seconds);
       },
-      PosixFile::Target::replace);
+      Existing::replace);
 }
 
 namespace {
 
 /// A result with sums that others are made of.
-struct SumShard {
+struct SumShard : Shard {
   ResultDescription description;
-  ResultSlabs slabs;
-  PosixFile file;
   std::vector<std::vector<SumGroup>> groups;  ///< {cell}
-  double seconds = 0.0;
-
-  explicit SumShard(const fs::path& path)
-      : description(describe_shard(path)), file(path, PosixFile::Mode::read) {
-    if (!description.sums)
-      throw StudyError(path.string() + ": has no sums: give shards of one study");
-    if (check_seal(path) != Seal::holds) refuse_sums(path);
-    slabs = find_slabs(path, description);
-    for (const Slab& sums : slabs.sums)
-      groups.push_back(find_groups(file, sums, *description.sums));
-    file.read_at(slabs.wall_seconds.offset, std::as_writable_bytes(std::span(&seconds, 1)));
-  }
 };
 
-using SumShards = std::vector<std::unique_ptr<SumShard>>;
+SumShard open_sum_shard(const fs::path& path) {
+  ResultDescription description = read_description(path);
+  if (!description.sums)
+    throw StudyError(path.string() + ": has no sums: give shards of one study");
+  if (check_seal(path) != Seal::holds) refuse_sums(path);
+  SumShard shard{make_shard(path, description), std::move(description), {}};
+  const PosixFile file(path, PosixFile::Mode::read);
+  for (const Slab& sums : shard.slabs.sums)
+    shard.groups.push_back(find_groups(file, sums, *shard.description.sums));
+  return shard;
+}
 
-SumShards open_sum_shards(const std::vector<fs::path>& paths) {
-  SumShards shards;
+std::vector<SumShard> open_sum_shards(const std::vector<fs::path>& paths) {
+  std::vector<SumShard> shards;
   for (const fs::path& path : paths) {
-    shards.push_back(std::make_unique<SumShard>(path));
-    const auto different =
-        difference(shards.front()->description, shards.back()->description, path);
+    shards.push_back(open_sum_shard(path));
+    const auto different = difference(shards.front().description, shards.back().description, path);
     if (different) throw StudyError(*different);
   }
   return shards;
@@ -183,14 +151,14 @@ SumShards open_sum_shards(const std::vector<fs::path>& paths) {
 /// Throws StudyError unless the group `g` of `a` and `h` of `b`, which are of the same runs, are
 /// equal in all cells.
 void expect_equal_groups(const SumShard& a, std::size_t g, const SumShard& b, std::size_t h) {
+  const PosixFile file_a(a.path, PosixFile::Mode::read), file_b(b.path, PosixFile::Mode::read);
   for (std::size_t c = 0; c < a.groups.size(); ++c) {
     const SumGroup &left = a.groups[c][g], &right = b.groups[c][h];
     if (left.words == right.words && head_words(left) == head_words(right) &&
-        read_sums(a.file, left) == read_sums(b.file, right))
+        read_sums(file_a, left) == read_sums(file_b, right))
       continue;
-    throw StudyError(b.file.path().string() + ": the sums from run " +
-                     std::to_string(right.first_run) + " on differ from those in " +
-                     a.file.path().string() +
+    throw StudyError(b.path.string() + ": the sums from run " + std::to_string(right.first_run) +
+                     " on differ from those in " + a.path.string() +
                      " (made from other sources, by another compiler or C library; 'montecarta "
                      "info' tells): leave one of them out");
   }
@@ -203,19 +171,19 @@ struct Source {
 };
 
 /// {group from first_run on} Sources without a shard are missing.
-std::vector<Source> sources_of(const SumShards& shards, std::uint64_t first_run,
+std::vector<Source> sources_of(const std::vector<SumShard>& shards, std::uint64_t first_run,
                                std::uint64_t last_run, MergeSummary& summary) {
   std::vector<Source> sources((last_run - first_run + kRunsOfAGroup - 1) / kRunsOfAGroup);
-  for (const auto& shard : shards) {
-    for (std::size_t g = 0; g < shard->groups.front().size(); ++g) {
-      const SumGroup& group = shard->groups.front()[g];
+  for (const SumShard& shard : shards) {
+    for (std::size_t g = 0; g < shard.groups.front().size(); ++g) {
+      const SumGroup& group = shard.groups.front()[g];
       if (group.first_run < first_run || group.first_run >= last_run) continue;
       Source& source = sources[(group.first_run - first_run) / kRunsOfAGroup];
       if (source.shard != nullptr) {
-        expect_equal_groups(*source.shard, source.group, *shard, g);
+        expect_equal_groups(*source.shard, source.group, shard, g);
         summary.overlapping += group.runs;
       } else {
-        source = {shard.get(), g};
+        source = {&shard, g};
       }
     }
   }
@@ -224,28 +192,16 @@ std::vector<Source> sources_of(const SumShards& shards, std::uint64_t first_run,
 
 void expect_all_groups(const std::vector<Source>& sources, std::uint64_t first_run,
                        std::uint64_t last_run, const fs::path& shard) {
-  std::string missing;
+  std::vector<std::string> gaps;
+  std::uint64_t missing = 0;
   for (std::size_t k = 0; k < sources.size(); ++k) {
     if (sources[k].shard != nullptr) continue;
     const std::uint64_t begin = first_run + k * kRunsOfAGroup;
-    missing += "\n  montecarta run study.ini -o missing_" + std::to_string(k) + ".h5 --runs " +
-               std::to_string(begin) + ":" +
-               std::to_string(std::min(begin + kRunsOfAGroup, last_run));
+    const std::uint64_t end = std::min(begin + kRunsOfAGroup, last_run);
+    gaps.push_back(std::to_string(begin) + ":" + std::to_string(end));
+    missing += end - begin;
   }
-  if (missing.empty()) return;
-  throw StudyError(
-      "merge: runs are in none of the shards (nothing was written): compute them, then merge "
-      "again:\n  montecarta info " +
-      shard.string() + " --text > study.ini" + missing);
-}
-
-/// Copies the processor times of the runs of one group of cell `c`.
-void copy_seconds(const Source& source, std::size_t c, std::uint64_t first_run,
-                  const PosixFile& file, const ResultSlabs& slabs) {
-  const SumGroup& group = source.shard->groups[c][source.group];
-  const std::uint64_t here = group.first_run - source.shard->description.sums->first_run;
-  file.copy_at(slabs.sum_seconds[c].at(group.first_run - first_run), source.shard->file,
-               source.shard->slabs.sum_seconds[c].at(here), group.runs * sizeof(double));
+  if (missing > 0) refuse_gaps(gaps, missing, last_run - first_run, shard);
 }
 
 /// All groups of a new file, one behind the other.
@@ -262,15 +218,22 @@ SummedRuns summed_runs(const std::vector<Source>& sources, std::uint64_t first_r
   return sums;
 }
 
-void copy_groups(const std::vector<Source>& sources, std::size_t c, std::uint64_t first_run,
-                 const PosixFile& file, const ResultSlabs& slabs) {
-  std::uint64_t offset = slabs.sums[c].offset;
-  for (const Source& source : sources) {
-    const SumGroup& group = source.shard->groups[c][source.group];
-    const std::uint64_t bytes = (kGroupHeadWords + group.words) * kWordBytes;
-    file.copy_at(offset, source.shard->file, group.offset, bytes);
-    offset += bytes;
-    copy_seconds(source, c, first_run, file, slabs);
+/// Copies the sums of all groups, one behind the other, and the processor times of their runs.
+void copy_groups(const std::vector<Source>& sources, std::uint64_t first_run, const PosixFile& file,
+                 const ResultSlabs& slabs) {
+  std::vector<std::uint64_t> offsets;
+  for (const Slab& sums : slabs.sums) offsets.push_back(sums.offset);
+  for (const auto& [shard, g] : sources) {
+    const PosixFile from(shard->path, PosixFile::Mode::read);
+    for (std::size_t c = 0; c < offsets.size(); ++c) {
+      const SumGroup& group = shard->groups[c][g];
+      const std::uint64_t bytes = (kGroupHeadWords + group.words) * kWordBytes;
+      file.copy_at(offsets[c], from, group.offset, bytes);
+      file.copy_at(slabs.sum_seconds[c].at(group.first_run - first_run), from,
+                   shard->slabs.sum_seconds[c].at(shard->index(group.first_run)),
+                   group.runs * sizeof(double));
+      offsets[c] += bytes;
+    }
   }
 }
 
@@ -278,7 +241,7 @@ void copy_groups(const std::vector<Source>& sources, std::size_t c, std::uint64_
 
 MergeSummary merge_groups(const fs::path& out, const std::vector<fs::path>& paths,
                           std::uint64_t first_run, std::uint64_t last_run, Existing existing) {
-  const SumShards shards = open_sum_shards(paths);
+  const std::vector<SumShard> shards = open_sum_shards(paths);
   MergeSummary summary{.runs = last_run - first_run, .notes = {}};
   const std::vector<Source> sources = sources_of(shards, first_run, last_run, summary);
   expect_all_groups(sources, first_run, last_run, paths.front());
@@ -287,15 +250,13 @@ MergeSummary merge_groups(const fs::path& out, const std::vector<fs::path>& path
   const ResultDescription description =
       with_sums(first.description, summed_runs(sources, first_run, last_run, summary));
   double seconds = 0.0;
-  for (const auto& shard : shards) seconds += shard->seconds;
+  for (const SumShard& shard : shards) seconds += shard.wall_seconds;
   const auto fill = [&](const PosixFile& file, const ResultSlabs& slabs) {
-    copy_first_runs({first.file, first.slabs}, description, file, slabs);
-    for (std::size_t c = 0; c < summary.cells; ++c) copy_groups(sources, c, first_run, file, slabs);
+    copy_first_runs(first, description, file, slabs);
+    copy_groups(sources, first_run, file, slabs);
     write_seconds(file, slabs, seconds);
   };
-  summary.bytes = write_result(
-      out, description, fill,
-      existing == Existing::replace ? PosixFile::Target::replace : PosixFile::Target::keep);
+  summary.bytes = write_at_once(out, description, fill, existing);
   return summary;
 }
 

@@ -5,7 +5,6 @@
 #include "engine/runs/worker.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -97,16 +96,6 @@ void run_worker(Session& session) {
   session.spare_threads.gain_one();
 }
 
-class Stopwatch {
- public:
-  /// Wall time since construction [s].
-  double seconds() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point begin_ = Clock::now();
-};
-
 /// Runs until no run is missing or a stop is requested.
 void run_missing(const StudyPlan& plan, const RunOptions& options, const RunCounts& before,
                  ResultWriter& writer, StopRequest& stop, const Watch::Orders& orders) {
@@ -131,10 +120,6 @@ void close_output(ResultWriter& writer, const RunOutcome& outcome) {
   if (outcome.counts.missing == 0) return writer.finish();
   expect(outcome.stopped != StopReason::complete, "runs are missing though nobody asked to stop");
   writer.suspend();
-}
-
-void tell(const std::vector<std::string>& notes) {
-  for (const std::string& note : notes) std::fprintf(stderr, "%s\n", note.c_str());
 }
 
 }  // namespace
@@ -163,7 +148,9 @@ RunOutcome run_study(const StudyPlan& plan, const RunOptions& options) {
   const Interruption interruption(runs_under_scheduler() ? Interruption::From::scheduler
                                                          : Interruption::From::person);
   ResultWriter writer = open_output(plan, options);
-  if (!options.quiet) tell(writer.notes());
+  for (const std::string& note : writer.notes()) {
+    if (!options.quiet) std::fprintf(stderr, "%s\n", note.c_str());
+  }
   const RunCounts before = stored_counts(plan, writer);
   StopRequest stop;
   if (before.missing > 0) {

@@ -89,19 +89,15 @@ RunCounts Progress::counts() const {
   return counts;
 }
 
-double Progress::seconds() const {
-  return std::chrono::duration<double>(Clock::now() - begin_).count();
-}
-
 void Progress::show() {
-  const double now = seconds();
+  const double now = stopwatch_.seconds();
   if (form_ == Form::bar && now - last_shown_ >= kBarInterval) show_bar(now);
   if (form_ == Form::plain && now - last_shown_ >= plain_interval(now)) show_plain(now);
 }
 
 void Progress::finish() {
   if (form_ != Form::bar) return;
-  show_bar(seconds());
+  show_bar(stopwatch_.seconds());
   std::fputc('\n', out_);
 }
 

@@ -17,6 +17,16 @@
 
 namespace montecarta::engine {
 
+class Stopwatch {
+ public:
+  /// Wall time since construction [s].
+  double seconds() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point begin_ = Clock::now();
+};
+
 /// Numbers of runs in each state. A run is counted once for every cell.
 struct RunCounts {
   std::uint64_t complete = 0, failed = 0, missing = 0, spared = 0;
@@ -64,19 +74,17 @@ class Progress {
   void finish();
 
  private:
-  using Clock = std::chrono::steady_clock;
   enum class Form { bar, plain, none };
   static Form form_of(ProgressStyle style, std::FILE* out);
 
   void show_bar(double seconds);
   void show_plain(double seconds);
-  double seconds() const;
 
   Form form_;
   RunCounts at_start_;
   std::FILE* out_;
-  Clock::time_point begin_ = Clock::now();
-  double last_shown_ = 0.0;  ///< [s] since begin
+  Stopwatch stopwatch_;
+  double last_shown_ = 0.0;  ///< [s] on the stopwatch
   std::atomic<std::uint64_t> complete_{0};
   std::atomic<std::uint64_t> failed_{0};
   std::atomic<std::uint64_t> spared_{0};

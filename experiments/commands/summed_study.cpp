@@ -9,7 +9,6 @@
 #include "experiments/commands/stored_result.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <memory>
 
@@ -19,16 +18,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kShortestSitting = 0.001;  // [s]
-
-class Clock {
- public:
-  double seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
-};
 
 /// The plan of one group of a study.
 StudyPlan group_of(const StudyPlan& plan, std::uint64_t first_run) {
@@ -40,11 +29,6 @@ StudyPlan group_of(const StudyPlan& plan, std::uint64_t first_run) {
 
 fs::path file_in(const fs::path& folder, const char* kind, std::uint64_t first_run) {
   return folder / (std::string(kind) + "_" + std::to_string(first_run) + ".h5");
-}
-
-void remove_rows(const fs::path& rows) {
-  fs::remove(rows);
-  fs::remove(part_of(rows));
 }
 
 /// The description of a finished group. Throws StudyError if a byte of it is damaged.
@@ -99,7 +83,7 @@ RunOutcome run_group(const StudyPlan& group, const fs::path& folder, const RunOp
   const RunOutcome outcome = run_study(group, of_group);
   if (outcome.counts.missing > 0) return outcome;
   write_group(sums, of_group.output, sums_to_store(ResultFile(of_group.output), options.parallel));
-  remove_rows(of_group.output);
+  fs::remove(of_group.output);
   return outcome;
 }
 
@@ -133,7 +117,7 @@ void remove_work(const fs::path& folder) {
 
 /// Throws StudyError if a finished result is not that of this plan.
 void expect_result_of(const StudyPlan& plan, const RunOptions& options) {
-  const ResultDescription stored = describe_shard(options.output);
+  const ResultDescription stored = read_description(options.output);
   const auto differs = difference(describe(plan, options.provenance), stored, options.output);
   if (differs) throw StudyError(*differs);
   if (is_of_runs(stored, plan)) return;
@@ -171,7 +155,7 @@ std::optional<PosixFile> open_work(const fs::path& folder, const StudyPlan& plan
 fs::path groups_of(fs::path output) { return output += ".groups"; }
 
 RunOutcome run_summed_study(const StudyPlan& plan, const RunOptions& options) {
-  const Clock clock;
+  const Stopwatch stopwatch;
   const fs::path folder = groups_of(options.output);
   RunOutcome outcome;
   const std::optional<PosixFile> lock = open_work(folder, plan, options);
@@ -183,7 +167,7 @@ RunOutcome run_summed_study(const StudyPlan& plan, const RunOptions& options) {
   for (std::uint64_t run = plan.first_run; run < plan.last_run; run += kRunsOfAGroup) {
     const StudyPlan group = group_of(plan, run);
     std::optional<double> left = options.time_budget;
-    if (left) *left -= clock.seconds();
+    if (left) *left -= stopwatch.seconds();
     const RunOutcome part = run_group(group, folder, options, left);
     outcome.stopped = part.stopped;
     outcome.runs_here += part.runs_here;
@@ -193,9 +177,9 @@ RunOutcome run_summed_study(const StudyPlan& plan, const RunOptions& options) {
       break;
     }
     groups.push_back(file_in(folder, "group", run));
-    show_progress(plan, group.last_run - plan.first_run, clock.seconds(), options);
+    show_progress(plan, group.last_run - plan.first_run, stopwatch.seconds(), options);
   }
-  outcome.seconds = clock.seconds();
+  outcome.seconds = stopwatch.seconds();
   if (outcome.stopped != StopReason::complete) return outcome;
   merge_groups(options.output, groups, plan.first_run, plan.last_run,
                is_there(replaces_in(folder)) ? Existing::replace : Existing::refuse);

@@ -5,7 +5,7 @@
 #include "analysis/tables/tables.hpp"
 #include "engine/errors.hpp"
 #include "engine/records/result_layout.hpp"
-#include "engine/records/seal.hpp"
+#include "engine/records/merge.hpp"
 #include "tests/analysis/synthetic_result.hpp"
 #include "tests/doubles/damage.hpp"
 #include "tests/doubles/scratch_folder.hpp"

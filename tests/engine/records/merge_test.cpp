@@ -26,7 +26,7 @@ class Merge : public ResultWriting {
       merge_results(path_, shards, Existing::refuse);
     } catch (const std::runtime_error& error) {
       EXPECT_FALSE(std::filesystem::exists(path_));
-      EXPECT_FALSE(std::filesystem::exists(folder_ / "out.h5.merging"));
+      EXPECT_FALSE(std::filesystem::exists(folder_ / "out.h5.new"));
       return error.what();
     }
     ADD_FAILURE() << "merged";
