@@ -47,15 +47,6 @@ void expect_alike(const StateRows& rows, const fs::path& path, const StateRows& 
   }
 }
 
-std::vector<Eigen::VectorXd> truths_for(const std::vector<double>& times, const StateRows& truth,
-                                        const TimeMatch& match, const fs::path& estimate_path,
-                                        const fs::path& truth_path) {
-  std::vector<Eigen::VectorXd> truths;
-  for (const double time : times)
-    truths.push_back(truth_at(truth, time, match, estimate_path, truth_path));
-  return truths;
-}
-
 Pose pose_in(const Eigen::VectorXd& state) { return {state(0), state(1), wrap(state(2))}; }
 
 /// Writes the elements of a matrix, row by row, to its scan.
@@ -162,8 +153,9 @@ void write_runs(const JudgedFiles& files, const JudgingOptions& options, const L
       const fs::path& path = files.cells[c].of_run[run];
       const StateRows rows = read_with_innovations(path, options.match.tolerance);
       expect_alike(rows, path, longest.rows, longest.path, options.match.tolerance);
-      const auto truths =
-          truths_for(longest.rows.time, truth, options.match, path, files.truth[run]);
+      std::vector<Eigen::VectorXd> truths;
+      for (const double time : longest.rows.time)
+        truths.push_back(truth_at(truth, time, options.match, path, files.truth[run]));
       if (c == 0 && plan.drives->itinerary().has_truth) {
         Drive drive;
         std::ranges::transform(truths, std::back_inserter(drive.truth), pose_in);
@@ -189,27 +181,6 @@ ErrorConvention stated_error(const LongestRun& longest, std::optional<ErrorConve
   throw StudyError("--error " + name_of(*said) + ": not of a vector (" + longest.path.string() +
                    " has no pose, and only poses have frames): give --error world");
 }
-
-}  // namespace
-
-void judge_files(const JudgedFiles& files, const JudgingOptions& given) {
-  const LongestRun longest = longest_of(files, given.match.tolerance);
-  JudgingOptions options = given;
-  options.convention = stated_error(longest, given.convention);
-  const StudyPlan plan = imported_plan(files, longest.rows, options);
-  ResultWriter writer =
-      ResultWriter::create(options.output, plan, options.provenance, options.existing);
-  try {
-    write_runs(files, options, longest, plan, writer);
-    writer.finish();
-  } catch (...) {
-    std::error_code ignored;
-    fs::remove(writer.unfinished(), ignored);
-    throw;
-  }
-}
-
-namespace {
 
 /// A source of drives that has only the times of the estimates.
 class ImportedDrives final : public DriveSource {
@@ -272,8 +243,9 @@ Cell imported_cell(const EstimatorFiles& files, const StateRows& first, const Te
   return cell;
 }
 
-}  // namespace
-
+/// The plan that defines the layout of the result file; it cannot be run. `first` has the state and
+/// the times of all estimates. The text of the plan contains the SHA-256 of all files, so that
+/// results of the same estimates, judged with the same options, have the same study_sha256.
 StudyPlan imported_plan(const JudgedFiles& files, const StateRows& first,
                         const JudgingOptions& options) {
   const TextPairs settings = import_settings(first, options);
@@ -294,6 +266,25 @@ StudyPlan imported_plan(const JudgedFiles& files, const StateRows& first,
   for (const EstimatorFiles& cell : files.cells)
     plan.cells.push_back(imported_cell(cell, first, settings));
   return plan;
+}
+
+}  // namespace
+
+void judge_files(const JudgedFiles& files, const JudgingOptions& given) {
+  const LongestRun longest = longest_of(files, given.match.tolerance);
+  JudgingOptions options = given;
+  options.convention = stated_error(longest, given.convention);
+  const StudyPlan plan = imported_plan(files, longest.rows, options);
+  ResultWriter writer =
+      ResultWriter::create(options.output, plan, options.provenance, options.existing);
+  try {
+    write_runs(files, options, longest, plan, writer);
+    writer.finish();
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove(writer.unfinished(), ignored);
+    throw;
+  }
 }
 
 }  // namespace montecarta::experiments

@@ -33,10 +33,4 @@ void judge_files(const JudgedFiles& files, const JudgingOptions& options);
 /// Beginning of the text of an imported study, with which no study file begins.
 inline constexpr std::string_view kImportedSection = "[imported]";
 
-/// The plan that defines the layout of the result file; it cannot be run. `first` has the state and
-/// the times of all estimates. The text of the plan contains the SHA-256 of all files, so that
-/// results of the same estimates, judged with the same options, have the same study_sha256.
-StudyPlan imported_plan(const JudgedFiles& files, const StateRows& first,
-                        const JudgingOptions& options);
-
 }  // namespace montecarta::experiments

@@ -29,6 +29,14 @@ const StateShape& pose_in_space_shape() {
 
 using Names = std::vector<std::string>;
 
+/// Indices of the fields in a row of a file of estimates.
+struct EstimateFields {
+  StateShape shape;
+  std::vector<std::size_t> state;           ///< {width}
+  std::vector<std::size_t> covariance;      ///< {d, d}; from a triangle, elements occur twice
+  std::optional<std::size_t> nis, nis_dof;  ///< both or neither
+};
+
 const std::string kTimeColumn = "time_s", kCovariancePrefix = "cov_";
 const Names kPoseColumns = {"x_m", "y_m", "heading_rad"};
 const Names kQuaternionColumns = {"qx", "qy", "qz", "qw"};
@@ -174,14 +182,9 @@ bool is_of_state(const std::string& name) {
          !name.starts_with(kCovariancePrefix);
 }
 
-}  // namespace
-
-std::string name_of(StateKind kind) {
-  return kind == StateKind::pose            ? "pose"
-         : kind == StateKind::pose_in_space ? "pose in space"
-                                            : "vector";
-}
-
+/// Parses the header of estimates: `time_s`, the state, then `cov_A_B`, where A and B are names of
+/// components or indices from 0, for the whole covariance or one triangle, and optionally `nis` and
+/// `nis_dof`. Throws StudyError that begins with `place`.
 EstimateFields estimate_fields(const Names& header, const std::string& place) {
   check_header(header, place);
   Names state;
@@ -203,8 +206,11 @@ EstimateFields estimate_fields(const Names& header, const std::string& place) {
   return fields;
 }
 
-InnovationFields innovation_fields(const Names& header, const std::string& place) {
-  InnovationFields fields;
+/// Parses the header of innovations: `time_s`, then either `nis` and `nis_dof`, which leave the
+/// other fields empty, or the components of the innovation and their covariance as in a header of
+/// estimates. Throws StudyError that begins with `place`.
+EstimateFields innovation_fields(const Names& header, const std::string& place) {
+  EstimateFields fields;
   if (is_same_set(header, {kTimeColumn, kNis, kNisDof})) {
     check_header(header, place);
     fields.nis = place_of_name(header, kNis);
@@ -216,11 +222,13 @@ InnovationFields innovation_fields(const Names& header, const std::string& place
                      ": nis and other columns (innovations are either): write time_s,nis,nis_dof, "
                      "or the components of the innovation and their covariance");
   }
-  fields.whole = estimate_fields(header, place);
-  if (fields.whole->shape.kind != StateKind::pose_in_space) return fields;
+  fields = estimate_fields(header, place);
+  if (fields.shape.kind != StateKind::pose_in_space) return fields;
   throw StudyError(place + ": a quaternion is no innovation: write its components, e.g. rx_rad");
 }
 
+/// Indices of the state's fields in the header of a truth, which may have further columns. Throws
+/// StudyError that begins with `place`.
 std::vector<std::size_t> truth_fields(const Names& header, const StateShape& shape,
                                       const std::string& place) {
   check_header(header, place);
@@ -235,8 +243,6 @@ std::vector<std::size_t> truth_fields(const Names& header, const StateShape& sha
   }
   return fields;
 }
-
-namespace {
 
 /// Tolerance of the length of a quaternion that was printed with three digits.
 constexpr double kQuaternionPlaceSlack = 2e-3;
@@ -283,13 +289,6 @@ Eigen::MatrixXd covariance_in(const CsvRows& rows, const EstimateFields& fields)
   return P;
 }
 
-void take_innovation(const CsvRows& rows, const EstimateFields& fields, StateRows& all) {
-  if (!fields.nis) return;
-  const double nis = rows.number(*fields.nis, "number");
-  all.nis_dof.push_back(checked_dof(nis, rows.number(*fields.nis_dof, "number"), rows.place()));
-  all.nis.push_back(nis);
-}
-
 bool is_angle(const StateShape& shape, Eigen::Index k) {
   return shape.kind != StateKind::pose_in_space &&
          shape.units[static_cast<std::size_t>(k)] == "rad";
@@ -312,12 +311,6 @@ Eigen::VectorXd between(const StateShape& shape, const Eigen::VectorXd& a, const
 
 namespace fs = std::filesystem;
 
-/// The NIS of one row and its number of components.
-struct RowOfInnovations {
-  double nis = 0.0;
-  std::uint32_t dof = 0;
-};
-
 /// Index of the estimate to which a row of innovations belongs.
 std::size_t place_in(const StateRows& rows, double time, double tolerance, const CsvRows& file,
                      const fs::path& estimates) {
@@ -331,16 +324,8 @@ std::size_t place_in(const StateRows& rows, double time, double tolerance, const
                    "innovations without an estimate");
 }
 
-/// The NIS of a row from the innovation and its covariance.
-RowOfInnovations squares_of(const CsvRows& file, const EstimateFields& fields) {
-  const analysis::Nees sample = analysis::imported_nees(state_in(file, fields.state, fields.shape),
-                                                        covariance_in(file, fields));
-  const auto dimension = static_cast<std::uint32_t>(fields.shape.dimension());
-  return {sample.value, sample.is_usable() ? static_cast<std::uint32_t>(sample.rank) : dimension};
-}
-
-}  // namespace
-
+/// The number of components of a NIS. Throws StudyError that begins with `place` if `nis` is not a
+/// sum of squares or `dof` is not a count.
 std::uint32_t checked_dof(double nis, double dof, const std::string& place) {
   constexpr double kMostComponents = 1e6;
   if (nis >= 0.0 && dof >= 0.0 && dof <= kMostComponents && dof == std::floor(dof)) {
@@ -351,6 +336,26 @@ std::uint32_t checked_dof(double nis, double dof, const std::string& place) {
                    "and 0 if nothing was observed");
 }
 
+/// The NIS of a row and its number of components.
+std::pair<double, std::uint32_t> squares_of(const CsvRows& file, const EstimateFields& fields) {
+  if (fields.nis) {
+    const double nis = file.number(*fields.nis, "number");
+    return {nis, checked_dof(nis, file.number(*fields.nis_dof, "number"), file.place())};
+  }
+  const analysis::Nees sample = analysis::imported_nees(state_in(file, fields.state, fields.shape),
+                                                        covariance_in(file, fields));
+  const auto dimension = static_cast<std::uint32_t>(fields.shape.dimension());
+  return {sample.value, sample.is_usable() ? static_cast<std::uint32_t>(sample.rank) : dimension};
+}
+
+}  // namespace
+
+std::string name_of(StateKind kind) {
+  return kind == StateKind::pose            ? "pose"
+         : kind == StateKind::pose_in_space ? "pose in space"
+                                            : "vector";
+}
+
 StateRows read_estimates(const std::filesystem::path& path) {
   CsvRows file(path);
   const EstimateFields fields = estimate_fields(file.columns(), file.place());
@@ -359,7 +364,10 @@ StateRows read_estimates(const std::filesystem::path& path) {
     take_time(file.number(0, "time"), file.place(), rows.time);
     rows.state.push_back(state_in(file, fields.state, fields.shape));
     rows.covariance.push_back(covariance_in(file, fields));
-    take_innovation(file, fields, rows);
+    if (!fields.nis) continue;
+    const auto [nis, dof] = squares_of(file, fields);
+    rows.nis.push_back(nis);
+    rows.nis_dof.push_back(dof);
   }
   return rows;
 }
@@ -428,7 +436,7 @@ void read_innovations(const fs::path& path, const fs::path& estimates, double to
                      " has nis too (which one is it?): remove one");
   }
   CsvRows file(path);
-  const InnovationFields fields = innovation_fields(file.columns(), file.place());
+  const EstimateFields fields = innovation_fields(file.columns(), file.place());
   std::vector<double> nis(rows.time.size());
   std::vector<std::uint32_t> dof(rows.time.size());
   double before = -INFINITY;
@@ -439,17 +447,11 @@ void read_innovations(const fs::path& path, const fs::path& estimates, double to
                        " s is before that of the row above (rows go forward in time): sort them");
     }
     before = time;
-    RowOfInnovations row;
-    if (fields.whole) {
-      row = squares_of(file, *fields.whole);
-    } else {
-      row.nis = file.number(fields.nis, "number");
-      row.dof = checked_dof(row.nis, file.number(fields.nis_dof, "number"), file.place());
-    }
+    const auto [row_nis, row_dof] = squares_of(file, fields);
     if (rows.time.empty()) continue;
     const std::size_t k = place_in(rows, time, tolerance, file, estimates);
-    nis[k] += row.nis;
-    dof[k] += row.dof;
+    nis[k] += row_nis;
+    dof[k] += row_dof;
   }
   rows.nis = std::move(nis);
   rows.nis_dof = std::move(dof);

@@ -35,36 +35,6 @@ struct StateShape {
   bool operator==(const StateShape&) const = default;
 };
 
-/// Indices of the fields in a row of a file of estimates.
-struct EstimateFields {
-  StateShape shape;
-  std::vector<std::size_t> state;           ///< {width}
-  std::vector<std::size_t> covariance;      ///< {d, d}; from a triangle, elements occur twice
-  std::optional<std::size_t> nis, nis_dof;  ///< both or neither
-};
-
-/// Parses the header of estimates: `time_s`, the state, then `cov_A_B`, where A and B are names of
-/// components or indices from 0, for the whole covariance or one triangle, and optionally `nis` and
-/// `nis_dof`. Throws StudyError that begins with `place`.
-EstimateFields estimate_fields(const std::vector<std::string>& header, const std::string& place);
-
-/// Indices of the fields in a row of a file of innovations.
-struct InnovationFields {
-  std::optional<EstimateFields> whole;  ///< innovation and covariance; else the next two
-  std::size_t nis = 0, nis_dof = 0;
-};
-
-/// Parses the header of innovations: `time_s`, then either `nis` and `nis_dof`, or the components
-/// of the innovation and their covariance as in a header of estimates. Throws StudyError that
-/// begins with `place`.
-InnovationFields innovation_fields(const std::vector<std::string>& header,
-                                   const std::string& place);
-
-/// Indices of the state's fields in the header of a truth, which may have further columns. Throws
-/// StudyError that begins with `place`.
-std::vector<std::size_t> truth_fields(const std::vector<std::string>& header,
-                                      const StateShape& shape, const std::string& place);
-
 /// Estimates or truths of one run, as read from a file.
 struct StateRows {
   StateShape shape;
@@ -84,10 +54,6 @@ std::size_t rows_in(const std::filesystem::path& path);
 
 /// Reads a truth of the same state; other columns are ignored. Throws like read_estimates().
 StateRows read_truth(const std::filesystem::path& path, const StateShape& shape);
-
-/// The number of components of a NIS. Throws StudyError that begins with `place` if `nis` is not a
-/// sum of squares or `dof` is not a count.
-std::uint32_t checked_dof(double nis, double dof, const std::string& place);
 
 /// The method that finds the truth at the time of an estimate.
 struct TimeMatch {
