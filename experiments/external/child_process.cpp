@@ -117,10 +117,6 @@ Pipe make_pipe() {
   return {std::move(read), std::move(write)};
 }
 
-void do_not_wait_for(const Descriptor& descriptor) {
-  ::fcntl(descriptor.number(), F_SETFL, O_NONBLOCK);
-}
-
 /// The environment of this process, with variables that make interpreters and linear algebra
 /// reproducible and single-threaded, so that they leave the other cores to the other workers.
 /// Variables that the user has set are kept.
@@ -193,32 +189,6 @@ constexpr int kLookUp = 50;      // [ms] between two checks of the stop flag
 constexpr std::chrono::microseconds kAwake{50};
 constexpr std::size_t kErrorOutput = 4096;  // [byte] kept of the standard error
 
-/// While the object exists, writing to a pipe without a reader is an error of write() instead of a
-/// signal to this thread.
-class WithoutSigpipe {
- public:
-  WithoutSigpipe() {
-    sigemptyset(&pipe_);
-    sigaddset(&pipe_, SIGPIPE);
-    ::pthread_sigmask(SIG_BLOCK, &pipe_, &before_);
-  }
-  ~WithoutSigpipe() {
-    if (broken_ && sigismember(&before_, SIGPIPE) == 0) {
-      const timespec at_once{};
-      while (::sigtimedwait(&pipe_, nullptr, &at_once) < 0 && errno == EINTR) continue;
-    }
-    ::pthread_sigmask(SIG_SETMASK, &before_, nullptr);
-  }
-  WithoutSigpipe(const WithoutSigpipe&) = delete;
-  WithoutSigpipe& operator=(const WithoutSigpipe&) = delete;
-  void note_broken() { broken_ = true; }
-
- private:
-  sigset_t pipe_{};
-  sigset_t before_{};
-  bool broken_ = false;
-};
-
 bool is_for_later(int error) { return error == EAGAIN || error == EWOULDBLOCK || error == EINTR; }
 
 }  // namespace
@@ -240,13 +210,16 @@ fs::path find_program(const std::string& program) {
 
 ChildProcess::ChildProcess(std::span<const std::string> words) {
   OrphanGuard::instance();  // before the pipes exist, because it would inherit them
+  // Writing to a program that has ended is then an error of write() instead of the end of this one.
+  [[maybe_unused]] static const auto before = std::signal(SIGPIPE, SIG_IGN);
   Pipe input = make_pipe(), output = make_pipe(), error = make_pipe();
   start(words, input.read.number(), output.write.number(), error.write.number());
   process_handle_ = Descriptor(static_cast<int>(::syscall(SYS_pidfd_open, process_, 0)));
   input_ = std::move(input.write);
   output_ = std::move(output.read);
   error_ = std::move(error.read);
-  for (const Descriptor* ours : {&input_, &output_, &error_}) do_not_wait_for(*ours);
+  for (const Descriptor* ours : {&input_, &output_, &error_})
+    ::fcntl(ours->number(), F_SETFL, O_NONBLOCK);
 }
 
 void ChildProcess::start(std::span<const std::string> words, int input, int output, int error) {
@@ -318,12 +291,10 @@ void ChildProcess::wait_for_events(int milliseconds) {
 
 void ChildProcess::send() {
   if (sent_ == outgoing_.size() || !input_.is_open()) return;
-  WithoutSigpipe guard;
   const ssize_t n = ::write(input_.number(), outgoing_.data() + sent_, outgoing_.size() - sent_);
   if (n >= 0) {
     sent_ += static_cast<std::size_t>(n);
   } else if (!is_for_later(errno)) {
-    guard.note_broken();
     at_end_ = true;
   }
 }
