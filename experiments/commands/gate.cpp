@@ -121,18 +121,15 @@ int gate_command(const Arguments& arguments) {
   expect_all_runs(file, stored);
   const CellAnalysis cell =
       analyze_cell(file, stored, kGateLevel, file.runs().size(), parallel_of(arguments), within);
-  try {
-    const GateAnswer answer = gate(cell.verdict, allowed);
-    if (arguments.has("json")) {
-      std::cout << json_of(stored.label, cell.verdict, allowed, answer).dump(2) << "\n";
-    } else {
-      std::cout << wrapped(sentence(stored.label, cell.verdict) + too_many(cell.verdict, allowed),
-                           output_width());
-    }
-    return code_of(answer);
-  } catch (const StudyError& error) {
-    throw StudyError(place + ": cell " + stored.label + ": " + error.what());
+  const GateAnswer answer =
+      at_place(place + ": cell " + stored.label, [&] { return gate(cell.verdict, allowed); });
+  if (arguments.has("json")) {
+    std::cout << json_of(stored.label, cell.verdict, allowed, answer).dump(2) << "\n";
+  } else {
+    std::cout << wrapped(sentence(stored.label, cell.verdict) + too_many(cell.verdict, allowed),
+                         output_width());
   }
+  return code_of(answer);
 }
 
 }  // namespace montecarta::experiments

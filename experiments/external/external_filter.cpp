@@ -138,8 +138,8 @@ Parameter command_option() {
       .example = "\"python3 my_filter.py\""};
 }
 
-}  // namespace
-
+/// The filter kind of external programs: "cell = external command="python3 my_filter.py"
+/// label=mine".
 FilterKind external_kind() {
   return {
       .name = kExternal,
@@ -156,6 +156,8 @@ FilterKind external_kind() {
       .sensors = {},
       .make = make_external};
 }
+
+}  // namespace
 
 bool starts_program(const FilterKind& filter) { return filter.name == kExternal; }
 

@@ -84,10 +84,6 @@ enum class ExternalPrograms { refused, allowed };
 /// Name of the option that allows it, without dashes.
 inline constexpr const char* kAllowExternal = "allow-external";
 
-/// The filter kind of external programs: "cell = external command="python3 my_filter.py"
-/// label=mine".
-FilterKind external_kind();
-
 /// Returns whether cells of this kind start a program.
 bool starts_program(const FilterKind& filter);
 

@@ -101,18 +101,10 @@ std::vector<CellSpec> combinations(const CellSpec& line, const Lists& lists,
   return cells;
 }
 
-/// The words of a cell line, split at blanks outside quotes.
-std::vector<std::string> words_in(const IniEntry& entry) {
-  try {
-    return quoted_words(entry.value);
-  } catch (const StudyError& error) {
-    throw StudyError(entry.place + ": " + error.what());
-  }
-}
-
 std::vector<CellSpec> read_line(const IniEntry& entry, std::span<const FilterKind> filters,
                                 bool controls_are_measured) {
-  const std::vector<std::string> words = words_in(entry);
+  const std::vector<std::string> words =
+      at_place(entry.place, [&] { return quoted_words(entry.value); });
   if (words.empty()) {
     throw StudyError(entry.place +
                      ": cell names no filter (see montecarta list filters): write e.g. cell = " +
@@ -133,6 +125,59 @@ std::vector<CellSpec> read_line(const IniEntry& entry, std::span<const FilterKin
                      " cells (labels are unique): remove label or the lists");
   }
   return cells;
+}
+
+/// Returns whether a cell may differ from others of its filter in its label only, because an option
+/// is a text.
+bool is_known_by_label(const CellSpec& cell) {
+  return std::ranges::any_of(cell.filter->options, [](const Parameter& option) {
+    return option.kind == Parameter::Kind::text;
+  });
+}
+
+/// Converts a value to a part of a label: 0.75 -> 0p75, -1 -> m1.
+std::string label_part(std::string text) {
+  for (char& c : text) {
+    if (c == '-') c = 'm';
+    if (c != '_' && std::isalnum(static_cast<unsigned char>(c)) == 0) c = 'p';
+  }
+  return text;
+}
+
+/// Returns whether cells of the same filter differ in option number `i`. Options that are texts do
+/// not count, because they are no part of labels.
+bool distinguishes(const std::vector<CellSpec>& cells, const CellSpec& cell, std::size_t i) {
+  if (cell.filter->options[i].kind == Parameter::Kind::text) return false;
+  return std::ranges::any_of(cells, [&](const CellSpec& other) {
+    return other.filter == cell.filter && other.options[i].second != cell.options[i].second;
+  });
+}
+
+void describe(const std::vector<CellSpec>& cells, const CellSpec& cell, std::string& label,
+              std::string& distinction) {
+  label = cell.filter->name;
+  for (std::size_t i = 0; i < cell.options.size(); ++i) {
+    const auto& [key, value] = cell.options[i];
+    const bool particles = key == "particles";
+    if (!particles && !distinguishes(cells, cell, i)) continue;
+    label += particles ? "_m" + value : "_" + key + "_" + label_part(value);
+    distinction +=
+        (distinction.empty() ? "" : ", ") + (particles ? value + " particles" : key + " " + value);
+  }
+  for (const auto& [key, factor] : cell.mismatch) {
+    label += "_" + key + "_" + label_part(factor);
+    distinction += (distinction.empty() ? "" : ", ") + ("believes " + key + " x " + factor);
+  }
+}
+
+/// Gives every cell without a label one that consists of its distinguishing options.
+void label_cells(std::vector<CellSpec>& cells) {
+  for (CellSpec& cell : cells) {
+    std::string label;
+    describe(cells, cell, label, cell.distinction);
+    if (cell.label.empty()) cell.label = label;
+    if (cell.distinction.empty() && is_known_by_label(cell)) cell.distinction = cell.label;
+  }
 }
 
 void refuse_equal_labels(const std::vector<CellSpec>& cells) {
@@ -226,62 +271,6 @@ void refuse_sensors(const Settings& settings, std::span<const CellSpec> cells) {
     refuse_kind(settings, cell);
     refuse_mounting(cell, sensor);
     refuse_association(settings, cell, sensor);
-  }
-}
-
-namespace {
-
-/// Returns whether a cell may differ from others of its filter in its label only, because an option
-/// is a text.
-bool is_known_by_label(const CellSpec& cell) {
-  return std::ranges::any_of(cell.filter->options, [](const Parameter& option) {
-    return option.kind == Parameter::Kind::text;
-  });
-}
-
-/// Converts a value to a part of a label: 0.75 -> 0p75, -1 -> m1.
-std::string label_part(std::string text) {
-  for (char& c : text) {
-    if (c == '-') c = 'm';
-    if (c != '_' && std::isalnum(static_cast<unsigned char>(c)) == 0) c = 'p';
-  }
-  return text;
-}
-
-/// Returns whether cells of the same filter differ in option number `i`. Options that are texts do
-/// not count, because they are no part of labels.
-bool distinguishes(const std::vector<CellSpec>& cells, const CellSpec& cell, std::size_t i) {
-  if (cell.filter->options[i].kind == Parameter::Kind::text) return false;
-  return std::ranges::any_of(cells, [&](const CellSpec& other) {
-    return other.filter == cell.filter && other.options[i].second != cell.options[i].second;
-  });
-}
-
-void describe(const std::vector<CellSpec>& cells, const CellSpec& cell, std::string& label,
-              std::string& distinction) {
-  label = cell.filter->name;
-  for (std::size_t i = 0; i < cell.options.size(); ++i) {
-    const auto& [key, value] = cell.options[i];
-    const bool particles = key == "particles";
-    if (!particles && !distinguishes(cells, cell, i)) continue;
-    label += particles ? "_m" + value : "_" + key + "_" + label_part(value);
-    distinction +=
-        (distinction.empty() ? "" : ", ") + (particles ? value + " particles" : key + " " + value);
-  }
-  for (const auto& [key, factor] : cell.mismatch) {
-    label += "_" + key + "_" + label_part(factor);
-    distinction += (distinction.empty() ? "" : ", ") + ("believes " + key + " x " + factor);
-  }
-}
-
-}  // namespace
-
-void label_cells(std::vector<CellSpec>& cells) {
-  for (CellSpec& cell : cells) {
-    std::string label;
-    describe(cells, cell, label, cell.distinction);
-    if (cell.label.empty()) cell.label = label;
-    if (cell.distinction.empty() && is_known_by_label(cell)) cell.distinction = cell.label;
   }
 }
 

@@ -38,9 +38,6 @@ double mismatch_of(const CellSpec& cell, std::string_view name);
 std::vector<CellSpec> read_cells(std::span<const IniEntry> entries, const std::string& name,
                                  std::span<const FilterKind> filters, bool controls_are_measured);
 
-/// Gives every cell without a label one that consists of its distinguishing options.
-void label_cells(std::vector<CellSpec>& cells);
-
 /// The line that reads back as this cell: "fastslam2 label=fastslam2_m100 particles=100 ...".
 std::string cell_line(const CellSpec& cell);
 

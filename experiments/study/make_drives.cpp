@@ -159,17 +159,10 @@ std::shared_ptr<const DriveSource> several_drives_of(const Study& study) {
   const std::string& place = study.settings.place("scenario", "path");
   std::vector<RecordedDrive> drives;
   for (std::size_t k = 0; k < study.logs.size(); ++k) {
-    try {
-      drives.push_back(drive_of(study.settings, *study.logs[k]));
-    } catch (const StudyError& error) {
-      throw StudyError(place + ": drive " + std::to_string(k + 1) + ": " + error.what());
-    }
+    drives.push_back(at_place(place + ": drive " + std::to_string(k + 1),
+                              [&] { return drive_of(study.settings, *study.logs[k]); }));
   }
-  try {
-    return std::make_shared<SeveralDrives>(std::move(drives));
-  } catch (const StudyError& error) {
-    throw StudyError(place + ": " + error.what());
-  }
+  return at_place(place, [&] { return std::make_shared<SeveralDrives>(std::move(drives)); });
 }
 
 /// The value of a setting; nullopt if the section has none, such as the limits of the pilot.

@@ -83,12 +83,6 @@ std::size_t particles_of(const CellSpec& spec) {
   return to_count(std::ranges::find_if(spec.options, named)->second).value();
 }
 
-std::vector<std::pair<std::string, std::string>> settings_of(const CellSpec& spec) {
-  auto settings = spec.options;
-  settings.insert(settings.end(), spec.mismatch.begin(), spec.mismatch.end());
-  return settings;
-}
-
 /// A function that makes the cell's filter. An external program that is allowed is made once here,
 /// which does not start it but checks that it exists.
 std::function<std::unique_ptr<SlamFilter>()> maker_of(const CellSpec& spec,
@@ -101,11 +95,7 @@ std::function<std::unique_ptr<SlamFilter>()> maker_of(const CellSpec& spec,
       throw StudyError("cell " + label + " is an external program that may not be started");
     };
   }
-  try {
-    make();
-  } catch (const StudyError& error) {
-    throw StudyError(spec.place + ": " + error.what());
-  }
+  at_place(spec.place, make);
   return make;
 }
 
@@ -127,13 +117,15 @@ Capabilities capabilities_of(const FilterKind& filter, const FilterSetup& setup)
 Cell cell_of(const CellSpec& spec, const Study& study, ExternalPrograms programs) {
   const FilterSetup setup = setup_of(spec, study);
   const FilterKind& filter = *spec.filter;
+  auto options = spec.options;
+  options.insert(options.end(), spec.mismatch.begin(), spec.mismatch.end());
   return {.label = spec.label,
           .filter = filter.name,
           .long_name = filter.long_name + (spec.distinction.empty() ? "" : ", " + spec.distinction),
           .particles = particles_of(spec),
           .reports = capabilities_of(filter, setup),
           .landmarks = map_rows_of(setup, study.settings),
-          .settings = settings_of(spec),
+          .settings = std::move(options),
           .make_filter = maker_of(spec, setup, programs)};
 }
 
@@ -294,15 +286,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kScenario = "scenario";
 
-fs::path folder_of(const Settings& settings, const std::string& path,
-                   const fs::path& study_folder) {
-  try {
-    return find_recording(path, {study_folder});
-  } catch (const StudyError& error) {
-    throw StudyError(settings.place(kScenario, "path") + ": " + error.what());
-  }
-}
-
 /// Throws StudyError unless the drive has the reference that the study names.
 void expect_reference(const Settings& settings, const DriveLog& log) {
   const std::string& name = settings.text(kScenario, "reference");
@@ -382,7 +365,8 @@ std::vector<std::shared_ptr<const DriveLog>> read_drives_of(Settings& settings,
   std::vector<std::shared_ptr<const DriveLog>> logs;
   std::vector<std::string> fingerprints;
   for (std::size_t k = 0; k < paths.size(); ++k) {
-    const fs::path folder = folder_of(settings, paths[k], study_folder);
+    const fs::path folder = at_place(settings.place(kScenario, "path"),
+                                     [&] { return find_recording(paths[k], {study_folder}); });
     DriveLog log = read_log_csv(folder);
     fingerprints.push_back(fingerprint_of(log));
     expect_same_drive(settings, expected[k], fingerprints.back(), folder);

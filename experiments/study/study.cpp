@@ -49,8 +49,8 @@ std::optional<std::uint64_t> least_runs_in(const std::string& text) {
   return runs == std::uint64_t{0} ? std::nullopt : runs;
 }
 
-}  // namespace
-
+/// Parses study.until; nullopt if `text` is empty, which means all runs. Throws StudyError that
+/// begins with `place` if the text is malformed or the metric is no result (processor time).
 std::optional<Until> parse_until(const std::string& text, const std::string& place) {
   if (text.empty()) return std::nullopt;
   if (trimmed(text) == kUntilVerdict) return Until{};
@@ -72,6 +72,8 @@ std::optional<Until> parse_until(const std::string& text, const std::string& pla
   until.half_width = *width;
   return until;
 }
+
+}  // namespace
 
 std::string text_of(const Until& until) {
   if (until.score == nullptr && until.least_runs == Until::kUsualLeastRuns) return kUntilVerdict;
@@ -146,11 +148,6 @@ World read_inline_world(const IniText& ini, const std::string& name, const std::
   return world;
 }
 
-/// The lines below [world] that read back as exactly this world.
-std::string inline_world_text(const World& world) {
-  return lines_of("waypoint", world.waypoints) + lines_of("landmark", world.landmarks);
-}
-
 void refuse_unknown_sections(const IniText& ini) {
   const std::vector<std::string> known = study_sections();
   for (const IniSection& section : ini.sections) {
@@ -199,11 +196,7 @@ World world_of(const IniText& ini, const Settings& settings, const std::filesyst
   const std::string& name = settings.text("scenario", "world");
   const std::string& place = settings.place("scenario", "world");
   if (has_inline_world(ini)) return read_inline_world(ini, name, place);
-  try {
-    return find_world(name, {folder});
-  } catch (const StudyError& error) {
-    throw StudyError(place + ": scenario.world = " + name + ": " + error.what());
-  }
+  return at_place(place + ": scenario.world = " + name, [&] { return find_world(name, {folder}); });
 }
 
 void refuse_world(const IniText& ini, const Settings& settings) {
@@ -212,14 +205,6 @@ void refuse_world(const IniText& ini, const Settings& settings) {
                    ": scenario.kind = " + settings.scenario_kind() +
                    " has its own world, and the study a [world] (it would have no effect): remove "
                    "[world]");
-}
-
-/// Sets known association if the study does not set any and the detections of the log have
-/// identities.
-void use_identities(Study& study, const std::string& name) {
-  const bool is_given = study.settings.place("association", "kind") != name;
-  if (is_given || identities_of(study) == 0) return;
-  study.settings.replace("association", "kind", "known");
 }
 
 }  // namespace
@@ -240,7 +225,9 @@ Study parse_study(const std::string& text, const std::string& name,
   } else {
     refuse_world(ini, study.settings);
     study.logs = read_drives_of(study.settings, folder);
-    use_identities(study, name);
+    const bool is_given = study.settings.place("association", "kind") != name;
+    if (!is_given && identities_of(study) > 0)
+      study.settings.replace("association", "kind", "known");
   }
   refuse_sensors(study.settings, study.cells);
   study.until =
@@ -273,7 +260,10 @@ std::string resolved_text(const Study& study) {
     if (section == "cells") {
       for (const CellSpec& cell : study.cells) text += "cell = " + cell_line(cell) + "\n";
     }
-    if (section == "world") text += inline_world_text(study.world);
+    if (section == "world") {
+      text += lines_of("waypoint", study.world.waypoints);
+      text += lines_of("landmark", study.world.landmarks);
+    }
   }
   return text;
 }

@@ -31,10 +31,6 @@ struct Until {
   static constexpr std::uint64_t kUsualLeastRuns = 300;
 };
 
-/// Parses study.until; nullopt if `text` is empty, which means all runs. Throws StudyError that
-/// begins with `place` if the text is malformed or the metric is no result (processor time).
-std::optional<Until> parse_until(const std::string& text, const std::string& place);
-
 /// The rule in the canonical spelling of the resolved study.
 std::string text_of(const Until& until);
 

@@ -47,6 +47,16 @@ auto& item_called(std::string_view name, Items&& items, const NameOf& name_of,
   throw StudyError(problem + ": " + nearest_spelling(name, known));
 }
 
+/// Returns what `work` returns. If it throws StudyError, `place` is put in front of the error.
+template <class Work>
+auto at_place(const std::string& place, const Work& work) {
+  try {
+    return work();
+  } catch (const StudyError& error) {
+    throw StudyError(place + ": " + error.what());
+  }
+}
+
 /// Parses all of `text` as a number in the C locale; nullopt if it is not a finite number.
 std::optional<double> to_number(std::string_view text);
 /// Parses all of `text` as a whole number without sign; nullopt if it is none or exceeds 64 bits.
