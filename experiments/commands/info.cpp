@@ -59,12 +59,6 @@ void print_cells(const ResultFile& file) {
   std::cout << "\ncells\n" << aligned(without_idle_spared(std::move(rows)));
 }
 
-TextPairs filters_of(const ResultFile& file) {
-  TextPairs filters;
-  for (const StoredCell& cell : file.cells()) filters.emplace_back(cell.label, cell.long_name);
-  return filters;
-}
-
 struct Dataset {
   std::string name;
   double bytes = 0.0;
@@ -135,7 +129,9 @@ int info_command(const Arguments& arguments) {
   }
   print_study(file);
   print_cells(file);
-  print_pairs("filters", filters_of(file));
+  TextPairs filters;
+  for (const StoredCell& cell : file.cells()) filters.emplace_back(cell.label, cell.long_name);
+  print_pairs("filters", filters);
   print_pairs("scenario", file.scenario());
   print_pairs("provenance", file.provenance());
   print_datasets(file);

@@ -21,12 +21,6 @@
 namespace montecarta::experiments {
 namespace {
 
-std::size_t cell_of(const Study& study, const std::string& label) {
-  const CellSpec& cell = item_called(label, study.cells, &CellSpec::label,
-                                     "--cell " + label + ": no cell of this study");
-  return static_cast<std::size_t>(&cell - study.cells.data());
-}
-
 /// All columns that this study can record. Without identities there is no ground truth for
 /// associations.
 std::string all_columns(const Study& study) {
@@ -94,7 +88,9 @@ int replay_command(const Arguments& arguments) {
   refuse_input_as_output(output, arguments.operands());
   expect_place_for_result(output);
   const Study study = study_in(file, arguments);
-  const std::size_t cell = cell_of(study, label);
+  const CellSpec& chosen = item_called(label, study.cells, &CellSpec::label,
+                                       "--cell " + label + ": no cell of this study");
+  const auto cell = static_cast<std::size_t>(&chosen - study.cells.data());
   const Study whole = recording_everything(study, cell, run);
   const ExternalPrograms programs = programs_of(whole, arguments);
   const auto departs = departure(file, study, cell, run, programs);

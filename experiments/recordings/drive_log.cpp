@@ -169,10 +169,6 @@ void check_reference(const ReferencePath& reference, const std::string& place) {
   check_covariances(reference, place);
 }
 
-void check_landmarks(std::span<const Eigen::Vector2d> landmarks, const std::string& place) {
-  for (std::size_t i = 0; i < landmarks.size(); ++i) Record{place, i}.place_on_map(landmarks[i]);
-}
-
 void check_references(const DriveLog& log, const std::string& place) {
   std::set<std::string> names;
   for (const ReferencePath& reference : log.references) {
@@ -218,14 +214,15 @@ void check_start(const DriveLog& log, const std::string& scans, const std::strin
 
 void check_log(const DriveLog& log, const std::string& folder) {
   const std::string start = folder + "/start.csv", odometry = folder + "/odometry.csv",
-                    scans = folder + "/detections.csv";
+                    scans = folder + "/detections.csv", landmarks = folder + "/landmarks.csv";
   Record{start, 0}.limit(log.start_time, kLatestTime, "time", "seconds, a finite number");
   Record{start, 0}.place_on_map({log.start.x, log.start.y});
   Record{start, 0}.limit(log.start.heading, 1e3 * kPi, "heading", "radians");
   check_odometry(log.odometry, log.controls, odometry);
   check_scans(log.scans, scans, log.components);
   check_references(log, folder);
-  check_landmarks(log.landmarks, folder + "/landmarks.csv");
+  for (std::size_t i = 0; i < log.landmarks.size(); ++i)
+    Record{landmarks, i}.place_on_map(log.landmarks[i]);
   check_identities(log, scans);
   check_start(log, scans, odometry);
   check_end(log, odometry);

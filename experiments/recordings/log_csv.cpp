@@ -70,18 +70,14 @@ void read_start(const fs::path& path, DriveLog& log) {
                    " (a drive starts at one pose): write one row");
 }
 
-/// The different sets of controls that vehicles have.
-std::vector<std::span<const Quantity>> known_controls() {
-  std::vector<std::span<const Quantity>> known;
-  for_each_vehicle([&](const Vehicle& vehicle) { known.push_back(controls_of(vehicle)); });
-  return known;
-}
-
 /// Reads the odometry. Its columns determine the components of the controls.
 void read_odometry(const fs::path& path, DriveLog& log) {
-  const std::vector<std::span<const Quantity>> known = known_controls();
+  std::vector<std::span<const Quantity>> known;
   std::vector<std::string> headers;
-  for (const auto& controls : known) headers.push_back(header_of(controls));
+  for_each_vehicle([&](const Vehicle& vehicle) {
+    known.push_back(controls_of(vehicle));
+    headers.push_back(header_of(known.back()));
+  });
   CsvRows rows(path, headers);
   log.controls = known[rows.header()];
   while (rows.next()) {
@@ -244,12 +240,6 @@ class Table {
   std::string text_;
 };
 
-Table start_table(double time, const Pose& start) {
-  Table table(kStartHeader[0]);
-  table.add({time, start.x, start.y, start.heading});
-  return table;
-}
-
 Table odometry_table(const DriveLog& log) {
   Table table(header_of(log.controls));
   for (const auto& [time, control] : log.odometry) {
@@ -285,12 +275,6 @@ Table detection_table(const DriveLog& log) {
   return table;
 }
 
-Table landmark_table(const std::vector<Eigen::Vector2d>& landmarks) {
-  Table table(kLandmarkHeaders[0]);
-  for (const Eigen::Vector2d& place : landmarks) table.add({place.x(), place.y()});
-  return table;
-}
-
 void check_order(const DriveLog& log, const std::string& place) {
   if (std::ranges::is_sorted(log.references, is_read_before, &ReferencePath::name)) return;
   throw StudyError(place + ": references are not in the order of their names (in which they will " +
@@ -315,14 +299,17 @@ void write_log_csv(const DriveLog& log, const fs::path& folder, const fs::path& 
   check_order(log, folder.string());
   make_folder(folder);
   make_folder(truth_folder);
-  write_text(folder / "start.csv", start_table(log.start_time, log.start).text());
+  Table start(kStartHeader[0]);
+  start.add({log.start_time, log.start.x, log.start.y, log.start.heading});
+  write_text(folder / "start.csv", start.text());
   write_text(folder / "odometry.csv", odometry_table(log).text());
   write_text(folder / "detections.csv", detection_table(log).text());
   for (const ReferencePath& reference : log.references) {
     write_text(truth_folder / file_of_reference(reference.name), csv_of(reference));
   }
-  if (!log.landmarks.empty())
-    write_text(truth_folder / "landmarks.csv", landmark_table(log.landmarks).text());
+  Table landmarks(kLandmarkHeaders[0]);
+  for (const Eigen::Vector2d& place : log.landmarks) landmarks.add({place.x(), place.y()});
+  if (!log.landmarks.empty()) write_text(truth_folder / "landmarks.csv", landmarks.text());
 }
 
 namespace {
