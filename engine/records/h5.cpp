@@ -50,11 +50,6 @@ std::string name_by(ssize_t (*name_of)(hid_t, char*, std::size_t), hid_t id) {
   return name;
 }
 
-herr_t collect_name(hid_t, const char* name, const H5L_info_t*, void* names) {
-  static_cast<std::vector<std::string>*>(names)->emplace_back(name);
-  return 0;
-}
-
 /// Returns whether the file is open for reading only. Then an error is due to the user's file,
 /// otherwise to the machine.
 bool is_only_read(const Handle& object) {
@@ -106,6 +101,27 @@ hid_t native_type(Element element) {
       return H5T_NATIVE_UINT64;
   }
   return H5I_INVALID_HID;
+}
+
+template <class Info>
+herr_t collect_name(hid_t, const char* name, const Info*, void* names) {
+  static_cast<std::vector<std::string>*>(names)->emplace_back(name);
+  return 0;
+}
+
+/// The names that `iterate` collects in the order in which they were made, or in alphabetical order
+/// if a tool rewrote the file without keeping that order.
+template <class Iterate>
+std::vector<std::string> names_found(const Iterate& iterate, const char* what,
+                                     const Handle& object) {
+  std::vector<std::string> names;
+  herr_t status = iterate(H5_INDEX_CRT_ORDER, &names);
+  if (status < 0) {
+    names.clear();
+    status = iterate(H5_INDEX_NAME, &names);
+  }
+  check(status, what, object, "");
+  return names;
 }
 
 }  // namespace
@@ -198,15 +214,11 @@ bool is_group(const Handle& parent, const std::string& name) {
 }
 
 std::vector<std::string> members(const Handle& group) {
-  std::vector<std::string> names;
-  herr_t status =
-      H5Literate(group.id(), H5_INDEX_CRT_ORDER, H5_ITER_INC, nullptr, collect_name, &names);
-  if (status < 0) {  // a tool rewrote the file without keeping the order
-    names.clear();
-    status = H5Literate(group.id(), H5_INDEX_NAME, H5_ITER_INC, nullptr, collect_name, &names);
-  }
-  check(status, "list", group, "");
-  return names;
+  return names_found(
+      [&](H5_index_t order, std::vector<std::string>* names) {
+        return H5Literate(group.id(), order, H5_ITER_INC, nullptr, collect_name<H5L_info_t>, names);
+      },
+      "list", group);
 }
 
 namespace {
@@ -251,23 +263,13 @@ std::optional<std::string> value_of(const Handle& attribute) {
   return value.substr(0, value.find('\0'));
 }
 
-herr_t collect_name(hid_t, const char* name, const H5A_info_t*, void* names) {
-  static_cast<std::vector<std::string>*>(names)->emplace_back(name);
-  return 0;
-}
-
 std::vector<std::string> attribute_names(const Handle& object) {
-  std::vector<std::string> names;
-  hsize_t start = 0;
-  herr_t status =
-      H5Aiterate2(object.id(), H5_INDEX_CRT_ORDER, H5_ITER_INC, &start, collect_name, &names);
-  if (status < 0) {
-    names.clear();
-    start = 0;
-    status = H5Aiterate2(object.id(), H5_INDEX_NAME, H5_ITER_INC, &start, collect_name, &names);
-  }
-  check(status, "list the attributes of", object, "");
-  return names;
+  return names_found(
+      [&](H5_index_t order, std::vector<std::string>* names) {
+        return H5Aiterate2(object.id(), order, H5_ITER_INC, nullptr, collect_name<H5A_info_t>,
+                           names);
+      },
+      "list the attributes of", object);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -254,24 +255,13 @@ bool increases(const std::vector<T>& values) {
   return std::ranges::adjacent_find(values, std::ranges::greater_equal()) == values.end();
 }
 
-class Check {
- public:
-  explicit Check(const std::filesystem::path& path) : path_(path) {}
-
-  void expect(bool condition, const std::string& what) const {
-    if (condition) return;
-    throw StudyError(path_.string() + ": damaged (" + what +
-                     "): take a copy that is whole, or run the study again");
-  }
-
- private:
-  const std::filesystem::path& path_;
-};
+/// Throws StudyError with a description of the damage unless the condition holds.
+using Check = std::function<void(bool, const std::string&)>;
 
 /// Texts that are shown within one line of a table, a figure or a comment.
 void check_texts(const ResultDescription& d, const Check& check) {
   const auto expect_line = [&](const std::string& text) {
-    check.expect(visible(text, "\t") == text, "a control character in '" + visible(text) + "'");
+    check(visible(text, "\t") == text, "a control character in '" + visible(text) + "'");
   };
   expect_line(d.study_name);
   expect_line(d.title);
@@ -288,51 +278,50 @@ void check_texts(const ResultDescription& d, const Check& check) {
 }
 
 void check_runs(const ResultDescription& d, const Check& check) {
-  check.expect(!d.runs.empty() && increases(d.runs), "its run numbers do not increase");
-  check.expect(d.runs.back() < d.study_runs, "a run number is beyond the study's runs");
-  check.expect(d.full_runs <= d.study_runs, "more runs are full than the study has");
+  check(!d.runs.empty() && increases(d.runs), "its run numbers do not increase");
+  check(d.runs.back() < d.study_runs, "a run number is beyond the study's runs");
+  check(d.full_runs <= d.study_runs, "more runs are full than the study has");
   if (!d.sums) return;
   const auto is_border = [&](std::uint64_t run) {
     return run % kRunsOfAGroup == 0 || run == d.study_runs;
   };
-  check.expect(d.sums->first_run < d.sums->last_run && d.sums->last_run <= d.study_runs &&
-                   is_border(d.sums->first_run) && is_border(d.sums->last_run),
-               "its sums are of no groups of runs of the study");
-  check.expect(d.runs.front() == d.sums->first_run && d.runs.back() < d.sums->last_run,
-               "its runs are not the first of which it has sums");
+  check(d.sums->first_run < d.sums->last_run && d.sums->last_run <= d.study_runs &&
+            is_border(d.sums->first_run) && is_border(d.sums->last_run),
+        "its sums are of no groups of runs of the study");
+  check(d.runs.front() == d.sums->first_run && d.runs.back() < d.sums->last_run,
+        "its runs are not the first of which it has sums");
 }
 
 void check_times(const ResultDescription& d, const Check& check) {
-  check.expect(are_finite(d.times) && std::ranges::is_sorted(d.times),
-               "its times do not increase, or are no numbers");
+  check(are_finite(d.times) && std::ranges::is_sorted(d.times),
+        "its times do not increase, or are no numbers");
   const std::size_t scans = d.scan_times.size();
-  check.expect(d.scan_rows.size() == scans && d.scan_steps.size() == scans,
-               "scan, scan_step and scan_row are not equally long");
-  check.expect(increases(d.scan_steps) && increases(d.scan_rows),
-               "scan_step or scan_row do not increase");
+  check(d.scan_rows.size() == scans && d.scan_steps.size() == scans,
+        "scan, scan_step and scan_row are not equally long");
+  check(increases(d.scan_steps) && increases(d.scan_rows), "scan_step or scan_row do not increase");
   if (scans == 0) return;
-  check.expect(d.scan_rows.back() < d.times.size(), "scan_row is beyond the rows of time");
-  check.expect(d.scan_steps.back() < kMostSteps, "scan_step is beyond any drive");
+  check(d.scan_rows.back() < d.times.size(), "scan_row is beyond the rows of time");
+  check(d.scan_steps.back() < kMostSteps, "scan_step is beyond any drive");
   for (std::size_t s = 0; s < scans; ++s) {
-    check.expect(d.scan_times[s] == d.times[d.scan_rows[s]], "scan is not time at scan_row");
+    check(d.scan_times[s] == d.times[d.scan_rows[s]], "scan is not time at scan_row");
   }
-  check.expect(d.scan_rows == d.scan_steps || d.times.size() == scans,
-               "scan_row is neither scan_step nor one row after the other");
-  check.expect(increases(d.joint_scans) && (d.joint_scans.empty() || d.joint_scans.back() < scans),
-               "joint_scan does not increase, or is beyond the scans");
+  check(d.scan_rows == d.scan_steps || d.times.size() == scans,
+        "scan_row is neither scan_step nor one row after the other");
+  check(increases(d.joint_scans) && (d.joint_scans.empty() || d.joint_scans.back() < scans),
+        "joint_scan does not increase, or is beyond the scans");
 }
 
 void check_references(const std::vector<ReferencePath>& references, const Check& check) {
   for (const ReferencePath& path : references) {
-    check.expect(path.position.size() == path.time.size() &&
-                     (path.heading.empty() || path.heading.size() == path.time.size()),
-                 "reference " + path.name + " has other fixes than times");
-    check.expect(are_finite(path.time) && are_finite(path.position),
-                 "a fix of reference " + path.name + " is no place");
+    check(path.position.size() == path.time.size() &&
+              (path.heading.empty() || path.heading.size() == path.time.size()),
+          "reference " + path.name + " has other fixes than times");
+    check(are_finite(path.time) && are_finite(path.position),
+          "a fix of reference " + path.name + " is no place");
     const auto is_finite = [](const Eigen::Matrix3d& covariance) { return covariance.allFinite(); };
-    check.expect((path.covariance.empty() || path.covariance.size() == path.time.size()) &&
-                     std::ranges::all_of(path.covariance, is_finite),
-                 "reference " + path.name + " has no covariance for each of its fixes");
+    check((path.covariance.empty() || path.covariance.size() == path.time.size()) &&
+              std::ranges::all_of(path.covariance, is_finite),
+          "reference " + path.name + " has no covariance for each of its fixes");
   }
 }
 
@@ -343,28 +332,28 @@ bool are_alike(const ReferencePath& a, const ReferencePath& b) {
 }
 
 void check_scenario(const ResultDescription& d, const Check& check) {
-  check.expect(are_finite({d.start.x, d.start.y, d.start.heading}) && are_finite(d.landmarks) &&
-                   are_finite(d.waypoints),
-               "start, landmarks or waypoints are no places");
+  check(are_finite({d.start.x, d.start.y, d.start.heading}) && are_finite(d.landmarks) &&
+            are_finite(d.waypoints),
+        "start, landmarks or waypoints are no places");
   check_references(d.references, check);
 }
 
 /// Checks the scans of runs that are drives of their own.
 void check_drives(const ResultDescription& d, const Check& check) {
   if (d.drives.empty()) return;
-  check.expect(d.drives.size() == d.study_runs && d.times.size() == d.scan_times.size(),
-               "it has not one drive for each run, with rows at scans");
+  check(d.drives.size() == d.study_runs && d.times.size() == d.scan_times.size(),
+        "it has not one drive for each run, with rows at scans");
   for (const OwnDrive& drive : d.drives) {
-    check.expect(!drive.scan_times.empty() && drive.scan_times.size() <= d.scan_times.size() &&
-                     drive.scan_times.size() == drive.scan_steps.size(),
-                 "a drive has no scans, or more than the file");
-    check.expect(are_finite(drive.scan_times) && increases(drive.scan_times) &&
-                     increases(drive.scan_steps) &&
-                     are_finite({drive.start.x, drive.start.y, drive.start.heading}),
-                 "the times or the start of a drive are no numbers, or do not increase");
+    check(!drive.scan_times.empty() && drive.scan_times.size() <= d.scan_times.size() &&
+              drive.scan_times.size() == drive.scan_steps.size(),
+          "a drive has no scans, or more than the file");
+    check(are_finite(drive.scan_times) && increases(drive.scan_times) &&
+              increases(drive.scan_steps) &&
+              are_finite({drive.start.x, drive.start.y, drive.start.heading}),
+          "the times or the start of a drive are no numbers, or do not increase");
     check_references(drive.references, check);
-    check.expect(std::ranges::equal(drive.references, d.drives.front().references, are_alike),
-                 "its drives have different references");
+    check(std::ranges::equal(drive.references, d.drives.front().references, are_alike),
+          "its drives have different references");
   }
 }
 
@@ -389,24 +378,23 @@ const std::vector<std::vector<std::string_view>> kTogether = {
 void check_columns(const StoredCell& cell, const Check& check) {
   for (const Column& column : cell.columns) {
     const auto known = std::ranges::find(column_table(), column.name, &ColumnKind::name);
-    check.expect(known == column_table().end() || known->axes == column.axes,
-                 "cells/" + cell.label + "/" + column.name + " has other axes than it should");
+    check(known == column_table().end() || known->axes == column.axes,
+          "cells/" + cell.label + "/" + column.name + " has other axes than it should");
   }
   for (const std::span<const Column> columns : {cell.usual(), cell.full()}) {
     for (const auto& together : kTogether) {
       const auto there = std::ranges::count_if(
           together, [&](std::string_view name) { return has(columns, name); });
-      check.expect(there == 0 || there == std::ssize(together),
-                   "cells/" + cell.label + " has only a part of " + std::string(together.front()) +
-                       " and what belongs to it");
+      check(there == 0 || there == std::ssize(together),
+            "cells/" + cell.label + " has only a part of " + std::string(together.front()) +
+                " and what belongs to it");
     }
-    check.expect(has(columns, "pose_covariance") || cell.has("error") ||
-                     !has(columns, "pose_covariance_mixture"),
-                 "cells/" + cell.label + " has pose_covariance_mixture and no pose_covariance");
+    check(has(columns, "pose_covariance") || cell.has("error") ||
+              !has(columns, "pose_covariance_mixture"),
+          "cells/" + cell.label + " has pose_covariance_mixture and no pose_covariance");
   }
-  check.expect(cell.has("pose_mean") || cell.has("error"),
-               "cells/" + cell.label + " has no pose_mean");
-  check.expect(cell.label.size() <= kLongestLabel, "the label of a cell is too long");
+  check(cell.has("pose_mean") || cell.has("error"), "cells/" + cell.label + " has no pose_mean");
+  check(cell.label.size() <= kLongestLabel, "the label of a cell is too long");
 }
 
 /// The row axis of a covariance, which has the length of its column axis.
@@ -428,9 +416,9 @@ void check_lengths(const ResultDescription& d, const StoredCell& cell, const Che
       const Axis axis = row_axis(column.axes[a]);
       const auto known =
           length_of(axis, lengths).value_or(own.try_emplace(axis, column.shape[a]).first->second);
-      check.expect(column.shape[a] == known, "cells/" + cell.label + "/" + column.name +
-                                                 " is not as long as its axis " +
-                                                 std::string(name_of(axis)));
+      check(column.shape[a] == known, "cells/" + cell.label + "/" + column.name +
+                                          " is not as long as its axis " +
+                                          std::string(name_of(axis)));
     }
   }
 }
@@ -438,7 +426,11 @@ void check_lengths(const ResultDescription& d, const StoredCell& cell, const Che
 }  // namespace
 
 void check_description(const ResultDescription& description, const std::filesystem::path& path) {
-  const Check check(path);
+  const Check check = [&](bool condition, const std::string& damage) {
+    if (condition) return;
+    throw StudyError(path.string() + ": damaged (" + damage +
+                     "): take a copy that is whole, or run the study again");
+  };
   check_texts(description, check);
   check_runs(description, check);
   check_times(description, check);
