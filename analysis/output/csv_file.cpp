@@ -7,8 +7,10 @@
 
 #include <cerrno>
 #include <cstring>
+#include <fstream>
 #include <system_error>
 #include <unistd.h>
+#include <utility>
 
 namespace montecarta::analysis {
 namespace {
@@ -40,29 +42,24 @@ const std::filesystem::path& not_special(const std::filesystem::path& path) {
 
 }  // namespace
 
-CsvFile::CsvFile(const std::filesystem::path& path) : path_(path), out_(not_special(path)) {
-  check();
-}
-
-void CsvFile::check() {
-  if (!out_) cannot_write(path_);
-}
-
-void CsvFile::row(const std::vector<std::string>& fields) {
-  for (std::size_t i = 0; i < fields.size(); ++i) out_ << (i == 0 ? "" : ",") << quoted(fields[i]);
-  out_ << '\n';
-  check();
-}
-
-void CsvFile::row(const std::vector<double>& numbers) {
-  std::vector<std::string> fields;
-  for (const double number : numbers) fields.push_back(exact_text(number));
-  row(fields);
-}
-
-void CsvFile::close() {
-  out_.close();
-  check();
+void write_csv(const Frame& frame, const std::filesystem::path& path) {
+  errno = 0;
+  std::ofstream out(not_special(path));
+  std::string between;
+  for (const Frame::Column& column : frame.columns) {
+    out << std::exchange(between, ",") << quoted(heading(column.name, column.units));
+  }
+  if (!frame.columns.empty()) out << '\n';
+  for (std::size_t r = 0; r < frame.rows(); ++r) {
+    between.clear();
+    for (const Frame::Column& column : frame.columns) {
+      out << std::exchange(between, ",")
+          << (column.texts.empty() ? exact_text(column.numbers[r]) : quoted(column.texts[r]));
+    }
+    out << '\n';
+  }
+  out.close();
+  if (!out) cannot_write(path);
 }
 
 void make_directory(const std::filesystem::path& directory) {

@@ -1,30 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "analysis/output/frame.hpp"
+
 #include <filesystem>
-#include <fstream>
 #include <string>
-#include <vector>
 
 namespace montecarta::analysis {
 
-/// Writes a file of comma-separated values (RFC 4180: fields with commas or quotes are quoted), row
-/// by row. Every member throws RunError naming the file where it cannot be written.
-class CsvFile {
- public:
-  explicit CsvFile(const std::filesystem::path& path);
-
-  void row(const std::vector<std::string>& fields);
-  void row(const std::vector<double>& numbers);
-  /// Must be called last: throws if the disk was full.
-  void close();
-
- private:
-  void check();
-
-  std::filesystem::path path_;
-  std::ofstream out_;
-};
+/// Writes columns below their names as comma-separated values (RFC 4180: fields with commas or
+/// quotes are quoted). Throws RunError naming the file where it cannot be written.
+void write_csv(const Frame& frame, const std::filesystem::path& path);
 
 /// Makes a directory and those above it. Throws RunError if that fails.
 void make_directory(const std::filesystem::path& directory);

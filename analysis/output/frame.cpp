@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/output/frame.hpp"
 
-#include "analysis/output/csv_file.hpp"
-#include "analysis/output/number_text.hpp"
 #include "engine/errors.hpp"
 
 namespace montecarta::analysis {
@@ -35,23 +33,6 @@ std::size_t Frame::rows() const {
 
 std::string heading(const std::string& name, const std::string& units) {
   return units == "1" ? name : name + " [" + units + "]";
-}
-
-void write_csv(const Frame& frame, const std::filesystem::path& path) {
-  CsvFile file(path);
-  std::vector<std::string> fields;
-  for (const Frame::Column& column : frame.columns) {
-    fields.push_back(heading(column.name, column.units));
-  }
-  if (!fields.empty()) file.row(fields);
-  for (std::size_t r = 0; r < frame.rows(); ++r) {
-    for (std::size_t c = 0; c < fields.size(); ++c) {
-      const Frame::Column& column = frame.columns[c];
-      fields[c] = column.texts.empty() ? exact_text(column.numbers[r]) : column.texts[r];
-    }
-    file.row(fields);
-  }
-  file.close();
 }
 
 }  // namespace montecarta::analysis

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
 #include <initializer_list>
 #include <string>
 #include <utility>
@@ -44,8 +43,5 @@ struct Frame {
 
 /// The unit belongs to the name where there is one: position_rmse_mean [m].
 std::string heading(const std::string& name, const std::string& units);
-
-/// Throws RunError naming the file that cannot be written.
-void write_csv(const Frame& frame, const std::filesystem::path& path);
 
 }  // namespace montecarta::analysis

@@ -19,10 +19,12 @@ namespace montecarta::analysis {
 namespace {
 
 // [px]
+constexpr double kCharacter = 7.8;  // the width of most characters, in either font
 constexpr double kAxisRoom = 76.0, kNarrowAxisRoom = 48.0;  // beside a panel: numbers and label
 constexpr double kRightRoom = 14.0, kHeading = 26.0, kTicks = 54.0, kGap = 18.0;
 constexpr std::size_t kMostColumns = 3;
 constexpr double kSingleHeight = 250.0, kUsualHeight = 160.0, kStripPitch = 22.0;
+constexpr std::size_t kStripKeyHeight = 42;
 
 bool has_strips(const Chart& chart) { return !chart.panels.front().strips.rows.empty(); }
 
@@ -158,12 +160,52 @@ std::string line_style(std::size_t style) {
          (style == kReferenceStyle ? "(6,4)" : std::to_string(line_dashes(style)));
 }
 
-/// Adds plots one above the other, each with a data block of its own.
+std::string band_style() {
+  return "filledcurves fillcolor rgb '#707070' fillstyle transparent solid 0.45 border linecolor "
+         "rgb '#666666' linewidth 0.6";
+}
+
+std::string curve_style(std::size_t style) { return "lines " + line_style(style); }
+
+std::string mark_style(const ChartMarks& marks) {
+  const auto points = [&](const char* type, double size) {
+    return std::string("points pointtype ") + type + " pointsize " + exact_text(size) +
+           colour_of(marks.style);
+  };
+  switch (marks.shape) {
+    case Shape::line:
+      if (marks.style == kReferenceStyle) return curve_style(marks.style);
+      return "lines linewidth " + exact_text(marks.thickness > 0.0 ? marks.thickness : 1.4) +
+             colour_of(marks.style);
+    case Shape::points:
+      return points("7", marks.thickness > 0.0 ? 0.1 * marks.thickness : 0.5);
+    case Shape::crosses:
+      return points("1", 0.6);
+    case Shape::ellipses:
+      return points("6", 1.2);
+    case Shape::boxes:
+      return points("5", 1.2);
+  }
+  return "";
+}
+
+/// Data and plot commands of a panel's bands, curves and marks, one above the other, each with a
+/// data block of its own.
 class PanelWriter {
  public:
   PanelWriter(const Chart& chart, std::size_t panel)
-      : chart_(chart), panel_(chart.panels[panel]), prefix_("$p" + std::to_string(panel) + "_") {}
+      : chart_(chart), panel_(chart.panels[panel]), prefix_("$p" + std::to_string(panel) + "_") {
+    for (const Band& band : panel_.bands) add(band);
+    for (const Curve& curve : panel_.curves) add(curve);
+    for (const ChartMarks& marks : panel_.marks) add(marks);
+    if (!panel_.strips.rows.empty()) add(strip_boxes(panel_, chart.x_to));
+  }
 
+  const std::string& numbers() const { return numbers_; }  ///< data blocks
+  /// Behind "plot".
+  std::string commands() const { return commands_.empty() ? "NaN notitle" : commands_; }
+
+ private:
   void add(const Band& band) {
     const std::vector<double> x = {chart_.x_from, chart_.x_to}, lower = {band.lower, band.lower},
                               upper = {band.upper, band.upper};
@@ -182,9 +224,6 @@ class PanelWriter {
     plot({&marks.x, &marks.y}, "1:2", mark_style(marks));
   }
 
-  PanelPlots result() const { return {numbers_, commands_.empty() ? "NaN notitle" : commands_}; }
-
- private:
   void add_envelope(const Curve& curve) {
     std::vector<double> below = curve.envelope;
     for (double& end : below) end = -end;
@@ -225,50 +264,6 @@ class PanelWriter {
   std::size_t count_ = 0;
 };
 
-}  // namespace
-
-std::string band_style() {
-  return "filledcurves fillcolor rgb '#707070' fillstyle transparent solid 0.45 border linecolor "
-         "rgb '#666666' linewidth 0.6";
-}
-
-std::string curve_style(std::size_t style) { return "lines " + line_style(style); }
-
-std::string mark_style(const ChartMarks& marks) {
-  const auto points = [&](const char* type, double size) {
-    return std::string("points pointtype ") + type + " pointsize " + exact_text(size) +
-           colour_of(marks.style);
-  };
-  switch (marks.shape) {
-    case Shape::line:
-      if (marks.style == kReferenceStyle) return curve_style(marks.style);
-      return "lines linewidth " + exact_text(marks.thickness > 0.0 ? marks.thickness : 1.4) +
-             colour_of(marks.style);
-    case Shape::points:
-      return points("7", marks.thickness > 0.0 ? 0.1 * marks.thickness : 0.5);
-    case Shape::crosses:
-      return points("1", 0.6);
-    case Shape::ellipses:
-      return points("6", 1.2);
-    case Shape::boxes:
-      return points("5", 1.2);
-  }
-  return "";
-}
-
-PanelPlots panel_plots(const Chart& chart, std::size_t panel) {
-  PanelWriter writer(chart, panel);
-  const ChartPanel& drawn = chart.panels[panel];
-  for (const Band& band : drawn.bands) writer.add(band);
-  for (const Curve& curve : drawn.curves) writer.add(curve);
-  for (const ChartMarks& marks : drawn.marks) writer.add(marks);
-  if (!drawn.strips.rows.empty()) writer.add(strip_boxes(drawn, chart.x_to));
-  return writer.result();
-}
-
-namespace {
-
-using Shape = ChartMarks::Shape;
 /// Behind the legend, for which all of it is off.
 constexpr const char* kPanelStyle = R"(set key off
 set border 3 linewidth 0.8 linecolor rgb 'black'
@@ -444,6 +439,52 @@ std::string legend_plot(const std::vector<LegendEntry>& entries, std::size_t col
   return script + "NaN notitle\n";
 }
 
+/// The drawing from its upper left corner, in pixels.
+class Sheet {
+ public:
+  Sheet(double width, double height) : width_(width), height_(height) {}
+
+  std::string rectangle(const PanelBox& box, const std::string& colour) const {
+    return "set object rectangle from " + at(box.left, box.bottom) + " to " +
+           at(box.right, box.top) + " behind noclip fillcolor rgb '" + colour +
+           "' fillstyle solid 1 noborder\n";
+  }
+  std::string text(double x, double y, const std::string& words, const std::string& align) const {
+    return "set label " + gnuplot_quoted(words) + " at " + at(x, y) + " " + align + "\n";
+  }
+
+ private:
+  std::string at(double x, double y) const {
+    return "screen " + readable(x / width_, 6) + ",screen " + readable(1.0 - y / height_, 6);
+  }
+  double width_, height_;
+};
+
+/// Commands that draw the colour scale of strips, above them in place of a legend. It is aligned
+/// with the strips in `box` if there is room in a drawing of this size [px].
+std::string strip_key(const ChartStrips& strips, const PanelBox& box, double width, double height) {
+  const Sheet sheet(width, height);
+  constexpr double kTop = 6.0, kBottom = 18.0, kMiddle = 12.0, kText = 29.0;
+  constexpr double kLevelWidth = 10.0, kApart = 8.0, kScaleRoom = 140.0, kSample = 24.0;
+  const std::vector<std::string>& colours = strip_colours();
+  const std::size_t levels = colours.size() - 1;
+  const double inside = kCharacter * static_cast<double>(strips.inside.size());
+  const double length = kLevelWidth * static_cast<double>(levels) + kScaleRoom + kSample + inside;
+  const double left = std::min(box.left, width - length - 2.0 * kApart);
+  const auto place_of = [&](std::size_t level) {
+    return left + kLevelWidth * static_cast<double>(level);
+  };
+  std::string key;
+  for (std::size_t level = 0; level < levels; ++level)
+    key += sheet.rectangle({place_of(level), place_of(level + 1), kTop, kBottom}, colours[level]);
+  for (const StripTick& tick : strip_ticks())
+    key += sheet.text(place_of(tick.level), kText, tick.text, "center");
+  const double grey = place_of(levels) + kScaleRoom, end = grey + kSample;
+  return key + sheet.text(place_of(levels) + kApart, kMiddle, kStripScale, "left") +
+         sheet.rectangle({grey, end, kTop, kBottom}, colours.back()) +
+         sheet.text(end + kApart, kMiddle, strips.inside, "left");
+}
+
 }  // namespace
 
 GnuplotChart gnuplot_chart(const Chart& chart, std::size_t width) {
@@ -468,13 +509,13 @@ GnuplotChart gnuplot_chart(const Chart& chart, std::size_t width) {
   drawn.commands += kPanelStyle;
   for (std::size_t k = 0; k < layout.boxes.size(); ++k) {
     const ChartPanel& panel = chart.panels[k / layout.views];
-    const PanelPlots plots = panel_plots(chart, k / layout.views);
-    if (k % layout.views == 0) drawn.numbers += plots.numbers;
+    const PanelWriter plots(chart, k / layout.views);
+    if (k % layout.views == 0) drawn.numbers += plots.numbers();
     drawn.commands += place(layout.boxes[k], w, layout.height) +
                       horizontal_axis(chart, panel, layout.boxes[k]) +
                       vertical_axis(panel, layout.boxes[k]) + texts(panel) +
                       (k == 0 ? common_label(chart, layout) + key : "unset object\n") + "plot " +
-                      plots.commands + "\n";
+                      plots.commands() + "\n";
   }
   drawn.commands += "unset multiplot\n";
   return drawn;

@@ -10,9 +10,6 @@
 
 namespace montecarta::analysis {
 
-/// [px] the width of most characters, in either font.
-inline constexpr double kCharacter = 7.8;
-
 /// Position of a panel in a printed chart [px], from the upper left corner.
 struct PanelBox {
   double left = 0.0, right = 0.0, top = 0.0, bottom = 0.0;
@@ -40,26 +37,6 @@ void run_gnuplot(const std::filesystem::path& directory, const std::string& name
 
 /// A text constant of gnuplot: quoted, printed as it stands.
 std::string gnuplot_quoted(const std::string& text);
-
-/// Data and plot commands of a panel's bands, curves and marks.
-struct PanelPlots {
-  std::string numbers;   ///< data blocks
-  std::string commands;  ///< behind "plot"
-};
-
-PanelPlots panel_plots(const Chart& chart, std::size_t panel);
-
-/// Styles for plots and legends, behind "with".
-std::string band_style();
-std::string curve_style(std::size_t style);
-std::string mark_style(const ChartMarks& marks);
-
-/// [px] of strip_key().
-inline constexpr std::size_t kStripKeyHeight = 42;
-
-/// Commands that draw the colour scale of strips, above them in place of a legend. It is aligned
-/// with the strips in `box` if there is room in a drawing of this size [px].
-std::string strip_key(const ChartStrips& strips, const PanelBox& box, double width, double height);
 
 /// A chart as gnuplot draws it.
 struct GnuplotChart {

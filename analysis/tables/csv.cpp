@@ -49,13 +49,14 @@ Frame runs_frame(const StudyAnalysis& study) {
   return frame;
 }
 
-void write_table(const TextTable& table, const std::filesystem::path& path) {
-  CsvFile file(path);
-  TableRow headings;
-  for (const auto& column : table.headings) headings.push_back(column.text);
-  file.row(headings);
-  for (const auto& row : table.rows) file.row(row);
-  file.close();
+Frame failures_frame(const StudyAnalysis& study) {
+  const TextTable table = failure_table(study);
+  Frame frame;
+  for (std::size_t c = 0; c < table.headings.size(); ++c) {
+    frame.columns.push_back({table.headings[c].text});
+    for (const TableRow& row : table.rows) frame.columns[c].texts.push_back(row[c]);
+  }
+  return frame;
 }
 
 Frame series_frame(const StudyAnalysis& study, const CellAnalysis& cell) {
@@ -78,7 +79,7 @@ std::vector<std::string> csv_names(const std::vector<std::string>& labels) {
 
 void write_csv(const StudyAnalysis& study, const std::filesystem::path& directory) {
   make_directory(directory);
-  write_table(failure_table(study), directory / kFailures);
+  write_csv(failures_frame(study), directory / kFailures);
   write_csv(cells_frame(study), directory / kCells);
   write_csv(consistency_frame(study), directory / kConsistency);
   write_csv(runs_frame(study), directory / kRuns);

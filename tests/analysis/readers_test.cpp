@@ -147,18 +147,17 @@ class SlowRecompute : public testing::Test {
   }
 
   void write_bounds() const {
-    CsvFile file(folder_ / "bounds.csv");
-    file.row(std::vector<std::string>{"runs", "dimension", "level", "lower", "upper"});
+    Frame rows{{{"runs"}, {"dimension"}, {"level"}, {"lower"}, {"upper"}}};
     for (const std::uint64_t runs : {1u, 2u, 7u, 30u, 100u, 1000u, 20'000u}) {
       for (const std::uint64_t dimension : {1u, 2u, 3u, 63u}) {
         for (const double level : {0.5, 0.9, 0.95, 0.99, 0.999}) {
           const Interval bounds = nees_bounds(runs, dimension, level);
-          file.row({static_cast<double>(runs), static_cast<double>(dimension), level, bounds.lower,
-                    bounds.upper});
+          rows.push({static_cast<double>(runs), static_cast<double>(dimension), level, bounds.lower,
+                     bounds.upper});
         }
       }
     }
-    file.close();
+    write_csv(rows, folder_ / "bounds.csv");
   }
 
   void montecarta(const std::string& words) const {
