@@ -25,50 +25,44 @@ class BranchTracer {
     tree_.leaves = std::min(particles, most);
     for (std::size_t k = 0; k < tree_.leaves; ++k) {
       tree_.branches.push_back({kNoBranch, 0.0, end, 1, 0.0});
-      alive_.emplace_back(static_cast<std::uint32_t>(k * particles / tree_.leaves), k);
+      alive_.push_back({static_cast<std::uint32_t>(k * particles / tree_.leaves), k});
     }
   }
 
   bool is_over() const { return alive_.size() < 2; }
 
-  /// From particles to their parents, which lived at `time`.
+  /// From particles to their parents, which lived at `time`. Lines of one parent become the branch
+  /// that leads to it.
   void step_back(std::span<const std::uint32_t> parents, double time) {
-    for (auto& [particle, branch] : alive_) {
-      particle = parents[particle];
-      ++child_count_[particle];
-    }
+    for (const Line& line : alive_) ++child_count_[parents[line.particle]];
+    std::vector<Line> before;
     for (const auto& [particle, branch] : alive_) {
-      if (child_count_[particle] > 1) join(particle, branch, time);
+      const std::uint32_t parent = parents[particle];
+      if (child_count_[parent] == 1) {
+        before.push_back({parent, branch});
+        continue;
+      }
+      if (open_[parent] == kNoBranch) {
+        open_[parent] = tree_.branches.size();
+        tree_.branches.push_back({kNoBranch, 0.0, time, 0, 0.0});
+        before.push_back({parent, open_[parent]});
+      }
+      tree_.branches[branch].parent = open_[parent];
+      tree_.branches[branch].from = time;
+      tree_.branches[open_[parent]].leaves += tree_.branches[branch].leaves;
     }
-    forget_joined();
+    alive_ = std::move(before);
+    for (const Line& line : alive_) {
+      child_count_[line.particle] = 0;
+      open_[line.particle] = kNoBranch;
+    }
   }
 
  private:
-  using Line = std::pair<std::uint32_t, std::size_t>;  ///< (particle, branch)
-
-  void join(std::uint32_t particle, std::size_t branch, double time) {
-    if (open_[particle] == kNoBranch) {
-      open_[particle] = tree_.branches.size();
-      tree_.branches.push_back({kNoBranch, 0.0, time, 0, 0.0});
-    }
-    tree_.branches[branch].parent = open_[particle];
-    tree_.branches[branch].from = time;
-    tree_.branches[open_[particle]].leaves += tree_.branches[branch].leaves;
-  }
-
-  /// Each parent once, with the branch that leads to it.
-  void forget_joined() {
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < alive_.size(); ++i) {
-      const auto [particle, branch] = alive_[i];
-      if (child_count_[particle] == 0) continue;
-      child_count_[particle] = 0;
-      alive_[kept++] = {particle, std::exchange(open_[particle], kNoBranch) == kNoBranch
-                                      ? branch
-                                      : tree_.branches[branch].parent};
-    }
-    alive_.resize(kept);
-  }
+  struct Line {
+    std::uint32_t particle;
+    std::size_t branch;
+  };
 
   AncestryTree& tree_;
   std::vector<Line> alive_;
@@ -162,18 +156,17 @@ FigureData data_of(const DrawnTree& cell) {
   return data;
 }
 
+/// The cell, how many of its particles are drawn, and the age of their youngest common ancestor.
 std::string title_of(const DrawnTree& cell) {
   const AncestryTree& tree = cell.tree;
-  return cell.label + ": " +
-         (tree.leaves < tree.particles ? std::to_string(tree.leaves) + " of " : "") +
-         std::to_string(tree.particles) + " particles";
-}
-
-/// Part of a title: the age of the youngest common ancestor.
-std::string title_of_end(const DrawnTree& cell) {
-  const double since = cell.tree.common_ancestor();
-  if (since == 0.0) return "no common ancestor since the start";
-  return "common ancestor " + readable(cell.end - since, 3) + " s before the end";
+  const double since = tree.common_ancestor();
+  return cell.label +
+         (tree.leaves < tree.particles ? ": " + std::to_string(tree.leaves) + " of " +
+                                             std::to_string(tree.particles) + " particles"
+                                       : "") +
+         (since == 0.0
+              ? ", no common ancestor since the start"
+              : ", common ancestor " + readable(cell.end - since, 3) + " s before the end");
 }
 
 /// The tree as one line with gaps: from its parent's height to its own, and on to its end.
@@ -196,13 +189,9 @@ ChartMarks lines_of(const DrawnTree& cell, const Frame& data) {
 }
 
 ChartPanel chart_panel(const DrawnTree& cell, const Frame& data) {
-  const bool some = cell.tree.leaves < cell.tree.particles;
-  ChartPanel panel{(some ? title_of(cell) : cell.label) + ", " + title_of_end(cell),
-                   {false, 0.0, static_cast<double>(cell.tree.leaves + 1)},
-                   {},
-                   {},
-                   {},
-                   cell.label};
+  ChartPanel panel{
+      title_of(cell), {false, 0.0, static_cast<double>(cell.tree.leaves + 1)}, {}, {}, {},
+      cell.label};
   panel.marks.push_back(lines_of(cell, data));
   return panel;
 }

@@ -54,17 +54,11 @@ std::vector<Ellipse> StoredMap::at(std::size_t scan) const {
 
 namespace {
 
-/// Bounds of the points (x, y) in columns `x` and `x` + 1 of data with a name that begins with
-/// `name`, as far as they lie within the limit.
-void include(const std::vector<FigureData>& all, const std::string& name, std::size_t x,
-             Bounds& bounds, const Bounds& limit = {}) {
-  for (const FigureData& data : all) {
-    if (!data.name.starts_with(name)) continue;
-    for (std::size_t k = 0; k < data.frame.rows(); ++k) {
-      const double at_x = data.frame.columns[x].numbers[k];
-      const double at_y = data.frame.columns[x + 1].numbers[k];
-      if (limit.empty() || limit.contains(at_x, at_y)) bounds.include(at_x, at_y);
-    }
+/// Bounds of the points (x, y) in columns `x` and `x` + 1, as far as they lie within the limit.
+void include(const Frame& points, std::size_t x, Bounds& bounds, const Bounds& limit = {}) {
+  for (std::size_t k = 0; k < points.rows(); ++k) {
+    const double at_x = points.columns[x].numbers[k], at_y = points.columns[x + 1].numbers[k];
+    if (limit.empty() || limit.contains(at_x, at_y)) bounds.include(at_x, at_y);
   }
 }
 
@@ -112,25 +106,32 @@ Bounds Bounds::grown(double share) const {
   return wide;
 }
 
-Bounds path_bounds(const std::vector<FigureData>& all) {
+namespace {
+
+/// Bounds of paths with their truth, and of landmarks.
+Bounds path_bounds(const std::vector<DrawnPath>& cells, const FigureData& landmarks) {
   Bounds bounds;
-  include(all, "path_", 1, bounds);
-  include(all, "path_", 3, bounds);
-  include(all, "landmarks.csv", 0, bounds);
+  for (const DrawnPath& cell : cells) {
+    include(cell.path.frame, 1, bounds);
+    include(cell.path.frame, 3, bounds);
+  }
+  include(landmarks.frame, 0, bounds);
   return bounds.widened();
 }
 
-Bounds recorded_bounds(const std::vector<FigureData>& all, const FigureData& fixes,
+/// Bounds for a recorded drive. A lost filter may be anywhere, so paths and maps reach no farther
+/// than a quarter beyond the fixes.
+Bounds recorded_bounds(const std::vector<DrawnPath>& cells, const FigureData& fixes,
                        const FigureData& landmarks) {
   Bounds bounds = bounds_of_fixes(fixes.frame);
   const Bounds limit = bounds.grown(0.25);
-  include(all, "path_", 1, bounds, limit);
-  include(all, "map_", 0, bounds, limit);
-  include({landmarks}, "landmarks.csv", 0, bounds);
+  for (const DrawnPath& cell : cells) {
+    include(cell.path.frame, 1, bounds, limit);
+    include(cell.map.frame, 0, bounds, limit);
+  }
+  include(landmarks.frame, 0, bounds);
   return bounds.widened();
 }
-
-namespace {
 
 /// In how many cells each run is complete.
 std::vector<std::size_t> completeness(const ResultFile& file) {
@@ -147,6 +148,7 @@ std::vector<std::size_t> completeness(const ResultFile& file) {
 constexpr std::size_t kMostPoints = 500;
 constexpr std::size_t kMostRecorded = 1500;  // a recorded drive is kilometres long
 constexpr std::size_t kMostFixes = 600;
+constexpr std::size_t kPoseEllipses = 16;  // along a path
 
 const Frame kNoEllipses{
     {{"x", "m"}, {"y", "m"}, {"major diameter", "m"}, {"minor diameter", "m"}, {"angle", "deg"}}};
@@ -171,6 +173,22 @@ std::optional<std::size_t> chosen_run(const ResultFile& file, std::optional<std:
   return static_cast<std::size_t>(best - cells.begin());
 }
 
+FigureData fix_data(const ResultFile& file, std::size_t run_index) {
+  const auto references = drive_of_run(file, file.runs()[run_index]).references;
+  if (references.empty()) return {"fixes.csv", kNoFixes};
+  const ReferencePath& path = references.front();
+  FigureData data{"fixes_" + path.name + ".csv", kNoFixes};
+  const std::size_t stride = 1 + path.time.size() / kMostFixes;
+  for (std::size_t f = 0; f < path.time.size(); f += stride) {
+    data.frame.push({path.time[f], path.position[f].x(), path.position[f].y()});
+  }
+  return data;
+}
+
+namespace {
+
+/// (time, true x, true y, x, y) at up to some hundred scans of a run; (time, x, y) without a known
+/// truth.
 FigureData path_data(const ResultFile& file, const StoredCell& cell, const RunRows& run) {
   FigureData data{"path_" + cell.label + ".csv", {{{"time", "s"}, {"x", "m"}, {"y", "m"}}}};
   const bool has_truth = !run.truth.empty();
@@ -190,6 +208,7 @@ FigureData path_data(const ResultFile& file, const StoredCell& cell, const RunRo
   return data;
 }
 
+/// Two-sigma ellipses of the pose at kPoseEllipses moments; no rows without covariance.
 FigureData pose_ellipses(const StoredCell& cell, const RunRows& run) {
   FigureData data{"pose_ellipses_" + cell.label + ".csv", kNoEllipses};
   const MomentRows& moments = estimate_of(run);
@@ -204,6 +223,8 @@ FigureData pose_ellipses(const StoredCell& cell, const RunRows& run) {
   return data;
 }
 
+/// Two-sigma ellipses of the landmarks in the map at the last scan. No rows if neither the map nor
+/// the final map is stored for every run; a map stored for one run is in its replay.
 FigureData map_data(const ResultFile& file, const StoredCell& cell, std::size_t run_index) {
   FigureData data{"map_" + cell.label + ".csv", kNoEllipses};
   if (!cell.has("map_seen") && !cell.has("final_map_seen")) return data;
@@ -213,25 +234,12 @@ FigureData map_data(const ResultFile& file, const StoredCell& cell, std::size_t 
   return data;
 }
 
-FigureData fix_data(const ResultFile& file, std::size_t run_index) {
-  const auto references = drive_of_run(file, file.runs()[run_index]).references;
-  if (references.empty()) return {"fixes.csv", kNoFixes};
-  const ReferencePath& path = references.front();
-  FigureData data{"fixes_" + path.name + ".csv", kNoFixes};
-  const std::size_t stride = 1 + path.time.size() / kMostFixes;
-  for (std::size_t f = 0; f < path.time.size(); f += stride) {
-    data.frame.push({path.time[f], path.position[f].x(), path.position[f].y()});
-  }
-  return data;
-}
-
+/// True landmarks in a run.
 FigureData landmark_data(const ResultFile& file, std::size_t run_index) {
   FigureData data{"landmarks.csv", {{{"x", "m"}, {"y", "m"}}}};
   for (const auto& at : file.landmarks_of(run_index)) data.frame.push({at.x(), at.y()});
   return data;
 }
-
-namespace {
 
 using Shape = ChartMarks::Shape;
 
@@ -367,7 +375,7 @@ Figure path_figure(const ResultFile& file, std::optional<std::uint64_t> run) {
   if (!file.has_truth()) figure.data.push_back(fixes);
   figure.data.push_back(landmarks);
   const Bounds bounds =
-      file.has_truth() ? path_bounds(figure.data) : recorded_bounds(figure.data, fixes, landmarks);
+      file.has_truth() ? path_bounds(cells, landmarks) : recorded_bounds(cells, fixes, landmarks);
   figure.chart = path_chart(cells, landmarks, fixes, bounds);
   return figure;
 }

@@ -64,33 +64,12 @@ struct Bounds {
   }
 };
 
-/// Bounds of paths (data "path_...") with their truth, and of landmarks.
-Bounds path_bounds(const std::vector<FigureData>& all);
-/// Bounds for a recorded drive. A lost filter may be anywhere, so paths and maps (data "path_...",
-/// "map_...") reach no farther than a quarter beyond the fixes.
-Bounds recorded_bounds(const std::vector<FigureData>& all, const FigureData& fixes,
-                       const FigureData& landmarks);
-
 /// Index in the file of the shown run: `run`, or the first that is complete in every cell, else in
 /// most; nullopt if no cell is complete. Throws StudyError if the file does not hold `run`.
 std::optional<std::size_t> chosen_run(const ResultFile& file, std::optional<std::uint64_t> run);
 
-/// Number of ellipses of the pose along a path.
-inline constexpr std::size_t kPoseEllipses = 16;
-
-/// (time, true x, true y, x, y) at up to some hundred scans of a run; (time, x, y) without a known
-/// truth.
-FigureData path_data(const ResultFile& file, const StoredCell& cell, const RunRows& run);
-/// Two-sigma ellipses of the pose at kPoseEllipses moments; no rows without covariance.
-FigureData pose_ellipses(const StoredCell& cell, const RunRows& run);
-/// Two-sigma ellipses of the landmarks in the map at the last scan. No rows if neither the map nor
-/// the final map is stored for every run; a map stored for one run is in its replay.
-FigureData map_data(const ResultFile& file, const StoredCell& cell, std::size_t run_index);
 /// (time, x, y) of up to some hundred fixes of the leading reference; no rows where there is none.
 FigureData fix_data(const ResultFile& file, std::size_t run_index);
-/// True landmarks in a run.
-FigureData landmark_data(const ResultFile& file, std::size_t run_index);
-
 /// Data files of one cell; those without rows are left out.
 struct DrawnPath {
   std::string label;
