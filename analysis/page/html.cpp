@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/page/html.hpp"
 
+#include "analysis/output/number_text.hpp"
 #include "analysis/output/strips.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -159,6 +161,11 @@ std::string chart_json(const Chart& chart) {
     last = &panel.x;
   }
   return script_text(json);
+}
+
+std::string pixels(double value) {
+  if (!std::isfinite(value)) return "0";
+  return exact_text(std::round(std::clamp(value, -1e6, 1e6) * 10.0) / 10.0);
 }
 
 std::string html_escape(const std::string& text) {

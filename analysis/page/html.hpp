@@ -33,6 +33,9 @@ std::string page_style();
 /// as the body of one function.
 std::string page_script();
 
+/// A number of a drawing: a tenth is enough for pixels, and for opacities. What is no number is 0.
+std::string pixels(double value);
+
 /// Plain text as a page shows it.
 std::string html_escape(const std::string& text);
 

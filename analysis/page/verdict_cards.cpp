@@ -40,8 +40,6 @@ int highest_decade(const StudyAnalysis& study) {
   return highest;
 }
 
-std::string pixels(double value) { return exact_text(std::round(10.0 * value) / 10.0); }
-
 /// NEES by its dimension over time, on a logarithmic axis.
 struct Sparkline {
   int highest;      ///< power of ten at the upper end

@@ -82,10 +82,14 @@ std::string failure_of(const ResultFile& file, const StoredCell& cell, std::size
          file.failure_reasons(cell)[run];
 }
 
-ReplayCell read_cell(const ResultFile& file, std::size_t index, std::size_t run,
-                     const Scans& frames, const ReplaySize& size) {
+/// Adds one cell, and the truth, which is the same for all of them.
+void add_cell(const ResultFile& file, std::size_t index, std::size_t run, const Scans& frames,
+              const ReplaySize& size, Replay& whole) {
   const StoredCell& cell = file.cells()[index];
   const RunRows rows = read_run(file, cell, run);
+  whole.x = component(rows.truth, 0, frames);
+  whole.y = component(rows.truth, 1, frames);
+  whole.h = component(rows.truth, 2, frames);
   const MomentRows& moments = estimate_of(rows);
   ReplayCell replay{cell.label, index, failure_of(file, cell, run)};
   replay.x = component(moments.mean, 0, frames);
@@ -96,7 +100,7 @@ ReplayCell read_cell(const ResultFile& file, std::size_t index, std::size_t run,
   replay.particles = read_particles(cell, rows, frames, size.particles);
   replay.has_ancestry = !rows.ancestor.empty();
   replay.maps = read_maps(file, cell, run, frames, size.ellipses);
-  return replay;
+  whole.cells.push_back(std::move(replay));
 }
 
 /// The share of one cell in the total of all cells.
@@ -117,18 +121,6 @@ void add_surroundings(const ResultFile& file, std::size_t run, const Scans& fram
   for (std::size_t f = 0; f < fixes.rows(); ++f) {
     replay.fixes.emplace_back(fixes.columns[1].numbers[f], fixes.columns[2].numbers[f]);
   }
-}
-
-void read_truth(const ResultFile& file, std::size_t run, const Scans& frames, Replay& replay) {
-  if (!file.has_truth()) return;
-  std::vector<double> all(file.times().size() * 3), rows;
-  file.read_truth(run, all);
-  for (const std::size_t row : file.scan_rows()) {
-    rows.insert(rows.end(), {all[3 * row], all[3 * row + 1], all[3 * row + 2]});
-  }
-  replay.x = component(rows, 0, frames);
-  replay.y = component(rows, 1, frames);
-  replay.h = component(rows, 2, frames);
 }
 
 /// [m] The size that the ellipses do not exceed in nine of ten frames: 1, 2 or 5 times a power of
@@ -161,7 +153,6 @@ Replay read_replay(const ResultFile& file, std::size_t run, const ReplaySize& si
   Replay replay{file.runs()[run]};
   if (frames.empty()) return replay;
   add_surroundings(file, run, frames, replay);
-  read_truth(file, run, frames, replay);
   std::vector<std::size_t> cells;
   for (std::size_t c = 0; c < file.cells().size(); ++c) {
     const StoredCell& cell = file.cells()[c];
@@ -170,7 +161,7 @@ Replay read_replay(const ResultFile& file, std::size_t run, const ReplaySize& si
   }
   for (const std::size_t c : cells) {
     const ReplaySize share = share_of(size, cells.size(), frames.size());
-    replay.cells.push_back(read_cell(file, c, run, frames, share));
+    add_cell(file, c, run, frames, share, replay);
   }
   replay.close_up = close_up_of(replay);
   return replay;

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 
 namespace montecarta::analysis {
@@ -16,15 +15,6 @@ namespace {
 constexpr std::size_t kMostDrawnCells = 4;
 constexpr double kPanelWidth = 380.0, kSpace = 24.0, kHead = 30.0, kLower = 130.0;  // [px]
 constexpr double kLeastNees = 0.1, kMostNees = 1e6;
-
-/// Pixels and opacities: tenths are enough of the former, hundredths of the latter.
-std::string px(double value) {
-  if (!std::isfinite(value)) return "0";
-  std::array<char, 64> text{};
-  const double tidy = std::round(std::clamp(value, -1e6, 1e6) * 10.0) / 10.0;
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), tidy).ptr;
-  return {text.data(), end};
-}
 
 /// A rectangle of the drawing [px].
 struct Box {
@@ -36,8 +26,8 @@ class Drawing {
  public:
   /// Everything until end() is cut off at the box.
   void begin(const Box& box) {
-    svg_ += "<svg x=\"" + px(box.left) + "\" y=\"" + px(box.top) + "\" width=\"" + px(box.width) +
-            "\" height=\"" + px(box.height) + "\">\n";
+    svg_ += "<svg x=\"" + pixels(box.left) + "\" y=\"" + pixels(box.top) + "\" width=\"" +
+            pixels(box.width) + "\" height=\"" + pixels(box.height) + "\">\n";
   }
   void end() { svg_ += "</svg>\n"; }
   /// `style`: attributes.
@@ -45,20 +35,20 @@ class Drawing {
     if (!d.empty()) svg_ += "<path d=\"" + d + "\" " + style + "/>\n";
   }
   void rectangle(const Box& box, const std::string& style) {
-    svg_ += "<rect x=\"" + px(box.left) + "\" y=\"" + px(box.top) + "\" width=\"" + px(box.width) +
-            "\" height=\"" + px(box.height) + "\" " + style + "/>\n";
+    svg_ += "<rect x=\"" + pixels(box.left) + "\" y=\"" + pixels(box.top) + "\" width=\"" +
+            pixels(box.width) + "\" height=\"" + pixels(box.height) + "\" " + style + "/>\n";
   }
   void circle(double x, double y, double radius, const std::string& style) {
-    svg_ += "<circle cx=\"" + px(x) + "\" cy=\"" + px(y) + "\" r=\"" + px(radius) + "\" " + style +
-            "/>\n";
+    svg_ += "<circle cx=\"" + pixels(x) + "\" cy=\"" + pixels(y) + "\" r=\"" + pixels(radius) +
+            "\" " + style + "/>\n";
   }
   void text(double x, double y, const std::string& words, const std::string& style) {
-    svg_ += "<text x=\"" + px(x) + "\" y=\"" + px(y) + "\" " + style + ">" + html_escape(words) +
-            "</text>\n";
+    svg_ += "<text x=\"" + pixels(x) + "\" y=\"" + pixels(y) + "\" " + style + ">" +
+            html_escape(words) + "</text>\n";
   }
   void ellipse(double x, double y, double a, double b, double angle, const std::string& style) {
-    svg_ += "<ellipse rx=\"" + px(a) + "\" ry=\"" + px(b) + "\" transform=\"translate(" + px(x) +
-            " " + px(y) + ") rotate(" + px(angle) + ")\" " + style + "/>\n";
+    svg_ += "<ellipse rx=\"" + pixels(a) + "\" ry=\"" + pixels(b) + "\" transform=\"translate(" +
+            pixels(x) + " " + pixels(y) + ") rotate(" + pixels(angle) + ")\" " + style + "/>\n";
   }
   const std::string& svg() const { return svg_; }
 
@@ -68,7 +58,7 @@ class Drawing {
 
 std::string stroke(const std::string& colour, double width, const char* opacity = "1") {
   return "fill=\"none\" stroke-linejoin=\"round\" stroke=\"" + colour + "\" stroke-width=\"" +
-         px(width) + "\" stroke-opacity=\"" + opacity + "\"";
+         pixels(width) + "\" stroke-opacity=\"" + opacity + "\"";
 }
 
 constexpr const char* kText = "currentColor";
@@ -111,7 +101,7 @@ View whole_view(const Bounds& bounds) {
 }
 
 std::string point(double x, double y, const View& view) {
-  return px(view.x(x)) + " " + px(view.y(y));
+  return pixels(view.x(x)) + " " + pixels(view.y(y));
 }
 
 /// Gaps where there is no number, and between places that are both out of the picture.
@@ -182,12 +172,12 @@ void draw_surroundings(const Replay& replay, const View& view, Drawing& drawing)
   std::string crosses, dots;
   for (const auto& [x, y] : replay.landmarks) {
     if (!view.shows(x, y)) continue;
-    const std::string left = px(view.x(x) - 3.0), top = px(view.y(y) - 3.0);
-    crosses += "M" + left + " " + px(view.y(y)) + "h6M" + px(view.x(x)) + " " + top + "v6";
+    const std::string left = pixels(view.x(x) - 3.0), top = pixels(view.y(y) - 3.0);
+    crosses += "M" + left + " " + pixels(view.y(y)) + "h6M" + pixels(view.x(x)) + " " + top + "v6";
   }
   for (const auto& [x, y] : replay.fixes) {
     if (!view.shows(x, y)) continue;
-    dots += "M" + px(view.x(x) - 1.0) + " " + px(view.y(y)) + "h2";
+    dots += "M" + pixels(view.x(x) - 1.0) + " " + pixels(view.y(y)) + "h2";
   }
   drawing.path(dots, stroke(kTruth, 2.0));
   drawing.path(crosses, stroke(kText, 1.0, "0.55"));
@@ -202,7 +192,7 @@ void draw_particles(const ReplayCell& cell, const std::string& colour, double ra
     if (!view.shows(frame.x[i], frame.y[i]) || !std::isfinite(weight)) continue;
     drawing.circle(
         view.x(frame.x[i]), view.y(frame.y[i]), radius,
-        "fill=\"" + colour + "\" fill-opacity=\"" + px(0.1 + 0.7 * std::sqrt(weight)) + "\"");
+        "fill=\"" + colour + "\" fill-opacity=\"" + pixels(0.1 + 0.7 * std::sqrt(weight)) + "\"");
   }
 }
 
@@ -211,9 +201,9 @@ void draw_vehicle(const std::vector<double>& x, const std::vector<double>& y,
                   const std::vector<double>& h, const View& view, const std::string& style,
                   Drawing& drawing) {
   if (x.empty() || !std::isfinite(x.back())) return;
-  drawing.path("M9 0L-6 5L-3 0L-6 -5Z", "transform=\"translate(" + px(view.x(x.back())) + " " +
-                                            px(view.y(y.back())) + ") rotate(" +
-                                            px(-h.back() * 180.0 / kPi) + ")\" " + style);
+  drawing.path("M9 0L-6 5L-3 0L-6 -5Z", "transform=\"translate(" + pixels(view.x(x.back())) + " " +
+                                            pixels(view.y(y.back())) + ") rotate(" +
+                                            pixels(-h.back() * 180.0 / kPi) + ")\" " + style);
 }
 
 /// A bar of a round number of metres, on the colour of the paper.
@@ -226,7 +216,7 @@ void draw_scale(const View& view, Drawing& drawing) {
   const double text_width = kScaleCharacter * static_cast<double>(text.size());
   drawing.rectangle({4.0, y - 17.0, std::max(metres * view.scale, 4.0 + text_width) + 8.0, 21.0},
                     "fill=\"#ffffff\" fill-opacity=\"0.85\"");
-  drawing.path("M8 " + px(y - 3.0) + "v3h" + px(metres * view.scale) + "v-3",
+  drawing.path("M8 " + pixels(y - 3.0) + "v3h" + pixels(metres * view.scale) + "v-3",
                stroke("#777777", 1.0));
   drawing.text(12.0, y - 5.0, text, kSoftText);
 }
@@ -289,7 +279,8 @@ void draw_growth(const Replay& replay, const ReplayCell& cell, const GrowthAxes&
   const double decades = std::log10(axes.greatest / kLeastNees);
   for (int power = -1; power <= static_cast<int>(decades) - 1; power += decades < 4.0 ? 1 : 2) {
     const double tick = std::pow(10.0, power);
-    drawing.path("M" + px(left) + " " + px(axes.y(tick)) + "h" + px(width), stroke("#d5d5d5", 0.6));
+    drawing.path("M" + pixels(left) + " " + pixels(axes.y(tick)) + "h" + pixels(width),
+                 stroke("#d5d5d5", 0.6));
     drawing.text(left - 5.0, axes.y(tick) + 4.0, power_text(power), end);
   }
   drawing.text(left, top + height + 17.0, "NEES ratio, " + level_text(kReplayShare) + " band",
@@ -300,7 +291,8 @@ void draw_growth(const Replay& replay, const ReplayCell& cell, const GrowthAxes&
   for (std::size_t f = 0; f < cell.nees.size(); ++f) {
     const bool is_known = std::isfinite(cell.nees[f]);
     if (is_known) {
-      d += (is_drawing ? "L" : "M") + px(axes.x(replay.times[f])) + " " + px(axes.y(cell.nees[f]));
+      d += (is_drawing ? "L" : "M") + pixels(axes.x(replay.times[f])) + " " +
+           pixels(axes.y(cell.nees[f]));
     }
     is_drawing = is_known;
   }
@@ -362,8 +354,8 @@ std::string replay_still(const Replay& replay) {
                 kPanelWidth, height},
                drawing);
   }
-  const std::string size = px(kSpace + static_cast<double>(columns) * (kPanelWidth + kSpace)) +
-                           " " + px(static_cast<double>(rows) * (height + kSpace));
+  const std::string size = pixels(kSpace + static_cast<double>(columns) * (kPanelWidth + kSpace)) +
+                           " " + pixels(static_cast<double>(rows) * (height + kSpace));
   return "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + size +
          "\" font-family=\"system-ui, sans-serif\" color=\"black\">\n"
          "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n" +
