@@ -88,23 +88,6 @@ void RunReader::read_whole(std::string_view column, std::size_t i, std::vector<d
   file_->read(*cell_, column, i, std::span(out));
 }
 
-void RunReader::read_cloud(std::size_t i, CloudRows& out, Scratch& scratch) const {
-  out.pose.clear();
-  out.log_weight.clear();
-  if (!file_->has_truth() || !has("log_weight", i)) return;
-  const std::size_t scans = file_->scan_times().size();
-  const auto keep = [&](const char* column, std::size_t width, std::vector<double>& kept) {
-    scratch.resize(scans * width);
-    file_->read(*cell_, column, i, std::span(scratch));
-    for (const std::size_t scan : calibration_scans(scans)) {
-      const auto row = std::span<const double>(scratch).subspan(scan * width, width);
-      kept.insert(kept.end(), row.begin(), row.end());
-    }
-  };
-  keep("particle_pose", 3 * cell_->particles, out.pose);
-  keep("log_weight", cell_->particles, out.log_weight);
-}
-
 template <class Number>
 void RunReader::read_scans(std::string_view column, std::size_t width, std::size_t i,
                            std::vector<Number>& out) const {
@@ -131,16 +114,12 @@ void RunReader::expect_particles(const RunRows& rows) const {
 }
 
 void RunReader::read_particles(std::size_t i, RunRows& rows) const {
-  if (cell_->particles == 0) {
-    rows.ess.clear();
-    rows.resampled.clear();
-    rows.ancestor.clear();
-    rows.particle_pose.clear();
-    rows.log_weight.clear();
-    return;
+  rows.ess.clear();
+  rows.resampled.clear();
+  if (cell_->particles > 0) {
+    read_scans("ess", 1, i, rows.ess);
+    read_scans("resampled", 1, i, rows.resampled);
   }
-  read_scans("ess", 1, i, rows.ess);
-  read_scans("resampled", 1, i, rows.resampled);
   read_scans("ancestor", cell_->particles, i, rows.ancestor);
   expect_particles(rows);
   read_scans("particle_pose", 3 * cell_->particles, i, rows.particle_pose);
@@ -166,7 +145,6 @@ void RunReader::read(std::size_t i, RunRows& rows, Scratch& scratch) const {
   read_scans("map_size", 1, i, rows.map_size);
   read_scans("rotation_information", 1, i, rows.rotation_information);
   read_final_map(i, rows, scratch);
-  read_cloud(i, rows.cloud, scratch);
   read_whole("joint_mean", i, rows.joint.mean);
   read_whole("joint_covariance", i, rows.joint.covariance);
   read_whole("error", i, rows.error.value);

@@ -60,7 +60,6 @@ class RunReader {
                      std::vector<double>& out) const;
   /// All of a column, as far as it is stored.
   void read_whole(std::string_view column, std::size_t i, std::vector<double>& out) const;
-  void read_cloud(std::size_t i, CloudRows& out, Scratch& scratch) const;
   /// Weights, parents and poses of the particles; empty where the cell has none.
   void read_particles(std::size_t i, RunRows& rows) const;
   /// Throws StudyError where a parent does not exist.

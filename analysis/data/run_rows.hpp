@@ -41,25 +41,6 @@ struct AssociationRows {
   std::vector<double> correct, wrong, new_again, missed, clutter;  ///< {scan}
 };
 
-/// Number of parts of a run at the ends of which calibration is tested.
-inline constexpr std::size_t kQuarters = 4;
-
-/// The scan that ends each quarter of a run of `scans` >= 1.
-inline std::array<std::size_t, kQuarters> calibration_scans(std::size_t scans) {
-  std::array<std::size_t, kQuarters> chosen{};
-  for (std::size_t m = 0; m < kQuarters; ++m) {
-    const std::size_t until = (m + 1) * scans / kQuarters;
-    chosen[m] = until == 0 ? 0 : until - 1;
-  }
-  return chosen;
-}
-
-/// Weighted particles at the scans of calibration_scans(); empty where not stored.
-struct CloudRows {
-  std::vector<double> pose;        ///< {moment, particle, 3} [m, m, rad]
-  std::vector<double> log_weight;  ///< {moment, particle}
-};
-
 /// Pose and map together at the scans of ResultDescription::joint_scans; empty where not stored.
 struct JointRows {
   std::vector<double> mean;        ///< {joint, state}; NaN of landmarks never seen
@@ -109,7 +90,6 @@ struct RunRows {
   std::vector<double> map_size;  ///< {scan} landmarks in the map
   std::vector<double> rotation_information;  ///< [1/rad^2] {scan}; empty where not stored
   std::optional<FinalMap> final_map;         ///< at the last scan, if stored and whole
-  CloudRows cloud;
   JointRows joint;
   ErrorRows error;                         ///< of imported estimates
   std::uint64_t run = 0;                   ///< its number in the study

@@ -59,17 +59,18 @@ RunPits::Components drawn_pits(const RunRows& rows, const EffectiveDraws& draws,
 /// Rank of the truth among the particles, smoothed: E draws of equal weight leave E + 1 gaps of
 /// equal probability, and `within` spreads the truth evenly over its gap from run to run. For
 /// uneven weights E is the effective sample size.
-RunPits::Components rank_pits(const std::vector<double>& truth, const CloudRows& cloud,
-                              std::size_t scan, std::size_t moment, double within) {
-  const std::size_t M = cloud.log_weight.size() / kQuarters;
+RunPits::Components rank_pits(const RunRows& rows, std::size_t scan, double within) {
+  const std::size_t M = rows.log_weight.size() / (rows.truth.size() / 3);
   RunPits::Components pits;
   for (std::size_t c = 0; c < 3; ++c) {
     double below = 0.0, all = 0.0, squares = 0.0;
-    for (std::size_t i = moment * M; i < (moment + 1) * M; ++i) {
-      const double weight = std::exp(cloud.log_weight[i]);
+    for (std::size_t i = scan * M; i < (scan + 1) * M; ++i) {
+      const double weight = std::exp(rows.log_weight[i]);
       all += weight;
       squares += weight * weight;
-      if (wrapped(c, cloud.pose[3 * i + c] - truth[3 * scan + c]) < 0.0) below += weight;
+      if (wrapped(c, rows.particle_pose[3 * i + c] - rows.truth[3 * scan + c]) < 0.0) {
+        below += weight;
+      }
     }
     const double E = all * all / squares;
     pits[c] = (below / all * E + within) / (E + 1.0);
@@ -360,7 +361,7 @@ RunPits pits_of(const RunRows& rows, std::size_t particles, std::uint64_t run,
   const MomentRows& estimate = estimate_of(rows);
   const auto scans = calibration_scans(rows.truth.size() / 3);
   pits.has_pose = !estimate.covariance.empty();
-  pits.has_rank = !rows.cloud.log_weight.empty();
+  pits.has_rank = !rows.log_weight.empty();
   pits.has_landmark = rows.final_map && !landmarks.empty();
   for (std::size_t m = 0; m < kQuarters; ++m) {
     if (pits.has_pose) {
@@ -368,7 +369,7 @@ RunPits pits_of(const RunRows& rows, std::size_t particles, std::uint64_t run,
       pits.pose[m] = drawn ? drawn_pits(rows, draws_at(rows, particles, scans[m]), scans[m])
                            : gaussian_pits(rows.truth, estimate, scans[m]);
     }
-    if (pits.has_rank) pits.rank[m] = rank_pits(rows.truth, rows.cloud, scans[m], m, evenly(run));
+    if (pits.has_rank) pits.rank[m] = rank_pits(rows, scans[m], evenly(run));
   }
   if (pits.has_landmark) pits.landmark = landmark_pits(*rows.final_map, run, landmarks);
   return pits;

@@ -16,6 +16,19 @@
 
 namespace montecarta::analysis {
 
+/// Number of parts of a run at the ends of which calibration is tested.
+inline constexpr std::size_t kQuarters = 4;
+
+/// The scan that ends each quarter of a run of `scans` >= 1.
+inline std::array<std::size_t, kQuarters> calibration_scans(std::size_t scans) {
+  std::array<std::size_t, kQuarters> chosen{};
+  for (std::size_t m = 0; m < kQuarters; ++m) {
+    const std::size_t until = (m + 1) * scans / kQuarters;
+    chosen[m] = until == 0 ? 0 : until - 1;
+  }
+  return chosen;
+}
+
 /// Probability integral transforms (PIT) of one run, uniform over runs if the filter is calibrated.
 /// NaN where not defined.
 struct RunPits {

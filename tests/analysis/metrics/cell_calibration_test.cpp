@@ -17,7 +17,8 @@ std::vector<JudgedPits> judged(const SyntheticStudy& study, std::size_t runs,
   for (std::size_t run = 0; run < runs; ++run) {
     RunRows rows = study.run(run);
     if (run < extra.size()) {
-      rows.cloud = extra[run].cloud;
+      rows.particle_pose = extra[run].particle_pose;
+      rows.log_weight = extra[run].log_weight;
       rows.final_map = extra[run].final_map;
     }
     sums.add(pits_of(rows, 0, run, {}));
@@ -56,19 +57,19 @@ TEST(CellCalibration, SlowFindsFaultWithAPerfectFilterInFivePercentOfStudies) {
   EXPECT_GT(rejected, 0.0) << "a test that never fails is none";
 }
 
-/// A cloud of M particles around the truth of each moment, the truth one more draw of the same law.
-CloudRows cloud_about(const RunRows& rows, std::size_t M, double spread, RngStream& draw) {
-  CloudRows cloud;
+/// Adds M particles around the truth of each moment, the truth one more draw of the same law.
+void add_cloud(std::size_t M, double spread, RngStream& draw, RunRows& rows) {
+  rows.particle_pose.resize(rows.truth.size() * M);
+  rows.log_weight.resize(rows.truth.size() / 3 * M, -std::log(static_cast<double>(M)));
   for (const std::size_t scan : calibration_scans(rows.truth.size() / 3)) {
     const double centre = draw.normal();
-    for (std::size_t i = 0; i < M; ++i) {
+    for (std::size_t i = scan * M; i < (scan + 1) * M; ++i) {
       for (std::size_t c = 0; c < 3; ++c) {
-        cloud.pose.push_back(rows.truth[3 * scan + c] + 0.1 * (spread * draw.normal() - centre));
+        rows.particle_pose[3 * i + c] =
+            rows.truth[3 * scan + c] + 0.1 * (spread * draw.normal() - centre);
       }
-      cloud.log_weight.push_back(-std::log(static_cast<double>(M)));
     }
   }
-  return cloud;
 }
 
 /// Moments and particles of M draws from the law that the truth of each scan is drawn from too.
@@ -81,7 +82,7 @@ RunRows few_draws(std::size_t M, double weight_sigma, RngStream& draw) {
     for (double& weight : weights) {
       weight /= all;
       squares += weight * weight;
-      rows.cloud.log_weight.push_back(std::log(weight));
+      rows.log_weight.push_back(std::log(weight));
     }
     rows.ess.push_back(1.0 / squares);
     Eigen::Matrix3Xd poses(3, M);
@@ -90,7 +91,8 @@ RunRows few_draws(std::size_t M, double weight_sigma, RngStream& draw) {
     const Eigen::Vector3d mean = poses * w;
     const Eigen::Matrix3Xd rest = poses.colwise() - mean;
     const Eigen::Matrix3d P = rest * w.asDiagonal() * rest.transpose();
-    rows.cloud.pose.insert(rows.cloud.pose.end(), poses.reshaped().begin(), poses.reshaped().end());
+    rows.particle_pose.insert(rows.particle_pose.end(), poses.reshaped().begin(),
+                              poses.reshaped().end());
     rows.spread.mean.insert(rows.spread.mean.end(), mean.begin(), mean.end());
     rows.spread.covariance.insert(rows.spread.covariance.end(), P.data(), P.data() + 9);
     for (int c = 0; c < 3; ++c) rows.truth.push_back(0.01 * draw.normal());
@@ -130,7 +132,7 @@ TEST(CellCalibration, RanksTheTruthAmongTheParticles) {
     CalibrationSums sums;
     for (std::uint64_t run = 0; run < 300; ++run) {
       RunRows rows = study.run(run);
-      rows.cloud = cloud_about(rows, 20, spread, draw);
+      add_cloud(20, spread, draw, rows);
       sums.add(pits_of(rows, 0, run, {}));
     }
     const auto found = sums.result(study.times(), 0.999);
