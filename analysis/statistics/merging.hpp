@@ -24,12 +24,6 @@ namespace montecarta::analysis {
 /// stays as it is.
 template <class T>
 void merge_into(T& sums, const T& next);
-template <class T>
-void merge_into(std::vector<T>& sums, const std::vector<T>& next);
-template <class T, std::size_t N>
-void merge_into(std::array<T, N>& sums, const std::array<T, N>& next);
-template <class T>
-void merge_into(std::optional<T>& sums, const std::optional<T>& next);
 
 /// Members of a class of sums with one rule, `merge`, by which those of two blocks become one.
 template <class Merge, class... Members>
@@ -96,32 +90,30 @@ constexpr auto of_first_run(Members... members) {
 }
 
 template <class T>
+inline constexpr bool kIsList = false;
+template <class T>
+inline constexpr bool kIsList<std::vector<T>> = true;
+template <class T, std::size_t N>
+inline constexpr bool kIsList<std::array<T, N>> = true;
+
+template <class T>
 void merge_into(T& sums, const T& next) {
   if constexpr (requires { T::parts(); }) {
     std::apply([&](const auto&... part) { (part.merge(sums, next), ...); }, T::parts());
   } else if constexpr (requires { sums.merge(next); }) {
     sums.merge(next);
+  } else if constexpr (kIsList<T>) {
+    const std::size_t common = std::min(sums.size(), next.size());
+    for (std::size_t k = 0; k < common; ++k) merge_into(sums[k], next[k]);
+    if constexpr (requires { sums.push_back(next[0]); }) {
+      sums.insert(sums.end(), next.begin() + static_cast<std::ptrdiff_t>(common), next.end());
+    }
+  } else if constexpr (requires { sums.has_value(); }) {
+    if (sums && next) merge_into(*sums, *next);
+    if (!sums) sums = next;
   } else {
     sums += next;
   }
-}
-
-template <class T>
-void merge_into(std::vector<T>& sums, const std::vector<T>& next) {
-  const std::size_t common = std::min(sums.size(), next.size());
-  for (std::size_t k = 0; k < common; ++k) merge_into(sums[k], next[k]);
-  sums.insert(sums.end(), next.begin() + static_cast<std::ptrdiff_t>(common), next.end());
-}
-
-template <class T, std::size_t N>
-void merge_into(std::array<T, N>& sums, const std::array<T, N>& next) {
-  for (std::size_t k = 0; k < N; ++k) merge_into(sums[k], next[k]);
-}
-
-template <class T>
-void merge_into(std::optional<T>& sums, const std::optional<T>& next) {
-  if (sums && next) merge_into(*sums, *next);
-  if (!sums) sums = next;
 }
 
 }  // namespace montecarta::analysis

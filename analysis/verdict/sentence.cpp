@@ -113,15 +113,13 @@ std::string where(const Verdict& verdict, Direction direction) {
   return is_alone ? ", mainly " + in_component(farthest->name) : "";
 }
 
-std::string too_large(Direction direction) {
-  return direction == Direction::above ? " times too large" : " times too small";
-}
-
 /// "NEES 1.28 to 2.25 times too large in heading"
 std::string ratio_words(const Verdict& verdict, Direction direction) {
   const auto shown = leading(verdict, direction);
   if (!shown) return "";
-  return "NEES " + factor_text(*shown, direction) + too_large(direction) + place_of(*shown);
+  return "NEES " + factor_text(*shown, direction) +
+         (direction == Direction::above ? " times too large" : " times too small") +
+         place_of(*shown);
 }
 
 /// The shown deviation with the least p-value among the families that are no ratios.
@@ -152,8 +150,8 @@ std::string other_words(const Verdict& verdict) {
 /// Times at which the size is off, if the size alone leads the verdict.
 std::string time_words(const Verdict& verdict, Direction direction) {
   const auto shown = leading(verdict, direction);
-  if (!shown || shown->test->family != Family::size) return "";
-  const std::string time = when(verdict, direction);
+  const bool is_size = shown && shown->test->family == Family::size;
+  const std::string time = is_size ? when(verdict, direction) : "";
   return time.empty() ? "" : ", " + time;
 }
 
@@ -200,35 +198,38 @@ std::string within_words(const Verdict& verdict) {
 
 std::string undecided_words(const Verdict& verdict) {
   if (complete_runs(verdict) < kFewestRunsOfTraces) {
-    return "undecided: take at least " + std::to_string(kFewestRunsOfTraces) + " runs";
+    return ": take at least " + std::to_string(kFewestRunsOfTraces) + " runs";
   }
-  if (!verdict.more_runs) return "undecided: many more runs decide";
-  return "undecided: about " + std::to_string(*verdict.more_runs) + " more runs decide";
+  if (!verdict.more_runs) return ": many more runs decide";
+  return ": about " + std::to_string(*verdict.more_runs) + " more runs decide";
+}
+
+/// Direction of an optimistic or a conservative filter.
+Direction direction_of(Answer answer) {
+  return answer == Answer::optimistic ? Direction::above : Direction::below;
 }
 
 std::string answer_words(const Verdict& verdict) {
+  const Direction direction = direction_of(verdict.answer);
+  const std::string name = name_of(verdict.answer);
   switch (verdict.answer) {
     case Answer::untested:
       return "not tested";
     case Answer::consistent:
       return within_words(verdict) + slight_words(verdict);
-    case Answer::optimistic:
-      return "optimistic: " + ratio_words(verdict, Direction::above) +
-             time_words(verdict, Direction::above);
-    case Answer::conservative:
-      return "conservative: " + ratio_words(verdict, Direction::below) +
-             time_words(verdict, Direction::below);
     case Answer::inconsistent:
-      return "inconsistent: " + inconsistent_words(verdict);
+      return name + ": " + inconsistent_words(verdict);
     case Answer::undecided:
-      break;
+      return name + undecided_words(verdict);
+    default:
+      return name + ": " + ratio_words(verdict, direction) + time_words(verdict, direction);
   }
-  return undecided_words(verdict);
 }
 
 /// "on average its squared errors are 1.67 times what it claims (95 %: 1.28 to 2.25), shown from
 /// 138 s on, mainly forward"
-std::string squared_errors(const Verdict& verdict, Direction direction) {
+std::string squared_errors(const Verdict& verdict) {
+  const Direction direction = direction_of(verdict.answer);
   const auto shown = leading(verdict, direction);
   if (!shown) return "";
   const bool is_above = direction == Direction::above;
@@ -270,9 +271,9 @@ std::string sentence_of(const std::string& label, const Verdict& verdict) {
     case Answer::consistent:
       return consistent_sentence(label, verdict);
     case Answer::optimistic:
-      return label + " is optimistic (overconfident): " + squared_errors(verdict, Direction::above);
+      return label + " is optimistic (overconfident): " + squared_errors(verdict);
     case Answer::conservative:
-      return label + " is conservative: " + squared_errors(verdict, Direction::below);
+      return label + " is conservative: " + squared_errors(verdict);
     case Answer::inconsistent:
       return label + " is inconsistent: " + inconsistent_words(verdict);
     case Answer::undecided:

@@ -76,8 +76,6 @@ struct ErrorNames {
   std::span<const double> times;
 };
 
-class DividedErrors;
-
 /// Adds up the errors of the complete runs of one cell and tests them (STATISTICS 5). Memory
 /// depends on the scans alone: the errors of the first runs are kept, at most 256 of them.
 class WholeError {
