@@ -41,7 +41,6 @@ TEST_F(RunsInFull, GiveAnAnalysisWhatEveryRunHas) {
     EXPECT_THAT(rows.spread.covariance, Not(IsEmpty()));
     EXPECT_THAT(rows.ancestor, IsEmpty());
     EXPECT_THAT(rows.particle_pose, IsEmpty());
-    EXPECT_THAT(rows.particle_pose, IsEmpty());
     EXPECT_FALSE(rows.final_map.has_value());
   }
 }
