@@ -89,6 +89,7 @@ constexpr auto of_first_run(Members... members) {
               std::tuple(members...)};
 }
 
+/// Vectors and arrays.
 template <class T>
 inline constexpr bool kIsList = false;
 template <class T>

@@ -40,6 +40,12 @@ void for_each_member(const Visit& visit) {
 
 template <class T>
 concept Number = std::is_arithmetic_v<T> || std::is_enum_v<T>;
+template <class T>
+concept FixedMatrix = (T::SizeAtCompileTime > 0);
+template <class T>
+concept Growing = requires(T list) {
+  list.emplace_back();
+};
 
 /// Writes sums.
 class SumWriter {
@@ -54,31 +60,20 @@ class SumWriter {
       words_.push_back(std::bit_cast<std::uint64_t>(value));
     } else if constexpr (Number<T>) {
       words_.push_back(static_cast<std::uint64_t>(value));
+    } else if constexpr (FixedMatrix<T>) {
+      for (const double element : value.reshaped()) put(element);
+    } else if constexpr (requires { value.has_value(); }) {
+      put(value.has_value());
+      if (value) put(*value);
+    } else if constexpr (kIsList<T>) {
+      if constexpr (Growing<T>) words_.push_back(value.size());
+      for (const auto& element : value) put(element);
     } else {
       for_each_member<T>([&](auto member, bool of_first_runs) {
         const bool is_left_out = of_first_runs && first_runs_ == FirstRuns::leave_out;
         is_left_out ? words_.push_back(0) : put(value.*member);  // an empty vector
       });
     }
-  }
-  template <class T>
-  void put(const std::vector<T>& values) {
-    words_.push_back(values.size());
-    for (const T& value : values) put(value);
-  }
-  template <class T, std::size_t N>
-  void put(const std::array<T, N>& values) {
-    for (const T& value : values) put(value);
-  }
-  template <class T>
-  void put(const std::optional<T>& value) {
-    put(value.has_value());
-    if (value) put(*value);
-  }
-  template <int R, int C>
-  void put(const Eigen::Matrix<double, R, C>& matrix) {
-    static_assert(R > 0 && C > 0);
-    for (const double value : matrix.reshaped()) put(value);
   }
 
   Words take() { return std::move(words_); }
@@ -102,35 +97,23 @@ class SumReader {
       const std::uint64_t word = next();
       value = static_cast<T>(word);
       expect(static_cast<std::uint64_t>(value) == word);
+    } else if constexpr (FixedMatrix<T>) {
+      for (double& element : value.reshaped()) get(element);
+    } else if constexpr (requires { value.has_value(); }) {
+      bool has_value = false;
+      get(has_value);
+      value.reset();
+      if (has_value) get(value.emplace());
+    } else if constexpr (Growing<T>) {
+      const std::uint64_t length = next();
+      expect(length <= words_.size());  // every value takes at least a word
+      value.clear();
+      for (std::uint64_t k = 0; k < length; ++k) get(value.emplace_back());
+    } else if constexpr (kIsList<T>) {
+      for (auto& element : value) get(element);
     } else {
       for_each_member<T>([&](auto member, bool /*of_first_runs*/) { get(value.*member); });
     }
-  }
-  template <class T>
-  void get(std::vector<T>& values) {
-    const std::uint64_t length = next();
-    expect(length <= words_.size());  // every value takes at least a word
-    values.clear();
-    for (std::uint64_t k = 0; k < length; ++k) {  // grows as long as there are words
-      T value{};
-      get(value);
-      values.push_back(std::move(value));
-    }
-  }
-  template <class T, std::size_t N>
-  void get(std::array<T, N>& values) {
-    for (T& value : values) get(value);
-  }
-  template <class T>
-  void get(std::optional<T>& value) {
-    bool has_value = false;
-    get(has_value);
-    value.reset();
-    if (has_value) get(value.emplace());
-  }
-  template <int R, int C>
-  void get(Eigen::Matrix<double, R, C>& matrix) {
-    for (double& value : matrix.reshaped()) get(value);
   }
 
   /// Throws StudyError, which says that the sums are damaged, unless the condition holds.
@@ -157,6 +140,14 @@ struct SumLayout {
       text += 'd';
     } else if constexpr (Number<T>) {
       text += 'n';
+    } else if constexpr (FixedMatrix<T>) {
+      text += std::to_string(T::SizeAtCompileTime) + "xd";
+    } else if constexpr (requires(T value) { value.has_value(); }) {
+      SumLayout<typename T::value_type>::add(text += '?');
+    } else if constexpr (Growing<T>) {
+      SumLayout<typename T::value_type>::add(text += '*');
+    } else if constexpr (kIsList<T>) {
+      SumLayout<typename T::value_type>::add(text += std::to_string(std::tuple_size_v<T>) + 'x');
     } else {
       text += '{';
       for_each_member<T>([&](auto member, bool of_first_runs) {
@@ -166,22 +157,6 @@ struct SumLayout {
       text += '}';
     }
   }
-};
-template <class T>
-struct SumLayout<std::vector<T>> {
-  static void add(std::string& text) { SumLayout<T>::add(text += '*'); }
-};
-template <class T, std::size_t N>
-struct SumLayout<std::array<T, N>> {
-  static void add(std::string& text) { SumLayout<T>::add(text += std::to_string(N) + 'x'); }
-};
-template <class T>
-struct SumLayout<std::optional<T>> {
-  static void add(std::string& text) { SumLayout<T>::add(text += '?'); }
-};
-template <int R, int C>
-struct SumLayout<Eigen::Matrix<double, R, C>> {
-  static void add(std::string& text) { text += std::to_string(R * C) + "xd"; }
 };
 
 /// The same words with repetitions written once: numbers that do not apply are NaN in every run.
