@@ -35,12 +35,6 @@ struct Quoted {
   Interval half_digits;
 };
 
-/// Larger distance of the two ends in half digits: up to 1 means "the same but for rounding".
-double distance_in_digits(const Quoted& quoted, const Interval& exact) {
-  return std::max(std::abs(quoted.ends.lower - exact.lower) / quoted.half_digits.lower,
-                  std::abs(quoted.ends.upper - exact.upper) / quoted.half_digits.upper);
-}
-
 /// The fewest runs with an interval no wider than `width`; it narrows as runs grow.
 std::uint64_t runs_of_width(double width, std::uint64_t dimension, double level) {
   std::uint64_t low = 1, high = kMostRuns;
@@ -56,20 +50,15 @@ std::uint64_t runs_of_width(double width, std::uint64_t dimension, double level)
   return low;
 }
 
-struct Candidate {
-  IntervalMatch match;
-  double digits = 0.0;
-};
-
-void add_candidates(const Quoted& quoted, std::uint64_t dimension, double level,
-                    std::vector<Candidate>& found) {
+void add_matches(const Quoted& quoted, std::uint64_t dimension, double level,
+                 std::vector<IntervalMatch>& found) {
   const auto [lower, upper] = quoted.ends;
   const std::uint64_t near = runs_of_width(upper - lower, dimension, level);
   for (std::uint64_t runs = near > 3 ? near - 3 : 1; runs <= near + 2; ++runs) {
     const Interval exact = nees_bounds(runs, dimension, level);
-    const double digits = distance_in_digits(quoted, exact);
-    const double deviation = std::max(std::abs(lower - exact.lower), std::abs(upper - exact.upper));
-    found.push_back({{runs, dimension, level, exact, deviation, digits <= 1.0}, digits});
+    const double digits = std::max(std::abs(lower - exact.lower) / quoted.half_digits.lower,
+                                   std::abs(upper - exact.upper) / quoted.half_digits.upper);
+    found.push_back({runs, dimension, level, exact, digits});
   }
 }
 
@@ -107,15 +96,14 @@ std::vector<IntervalMatch> match_interval(double lower, double upper, std::size_
   // The average of a consistent filter is the dimension, which lies inside every interval.
   const auto last =
       static_cast<std::uint64_t>(std::min(std::ceil(upper), static_cast<double>(kMostDimensions)));
-  std::vector<Candidate> found;
+  std::vector<IntervalMatch> found;
   for (auto dimension = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(lower));
        dimension <= last; ++dimension) {
-    for (const double level : kQuotedLevels) add_candidates(quoted, dimension, level, found);
+    for (const double level : kQuotedLevels) add_matches(quoted, dimension, level, found);
   }
-  std::ranges::stable_sort(found, {}, &Candidate::digits);
-  std::vector<IntervalMatch> matches;
-  for (std::size_t i = 0; i < std::min(most, found.size()); ++i) matches.push_back(found[i].match);
-  return matches;
+  std::ranges::stable_sort(found, {}, &IntervalMatch::digits);
+  found.resize(std::min(most, found.size()));
+  return found;
 }
 
 }  // namespace montecarta::analysis

@@ -29,9 +29,11 @@ struct IntervalMatch {
   std::uint64_t runs = 0;
   std::uint64_t dimension = 0;
   double level = 0.0;
-  Interval exact;              ///< the interval of that test
-  double deviation = 0.0;      ///< largest distance of a quoted end from the exact one
-  bool within_digits = false;  ///< the exact ends round to the digits that were quoted
+  Interval exact;       ///< the interval of that test
+  double digits = 0.0;  ///< larger distance of an end, in halves of the last digit quoted
+
+  /// Returns whether the exact ends round to the digits that were quoted.
+  bool within_digits() const { return digits <= 1.0; }
 };
 
 /// Which (runs, dimension, level) an interval quoted as [lower, upper] belongs to, best first, at

@@ -32,7 +32,7 @@ void print_matches(const std::vector<std::string>& ends) {
     rows.push_back({std::to_string(match.runs), std::to_string(match.dimension),
                     to_text(match.level),
                     "[" + fixed(match.exact.lower, 4) + ", " + fixed(match.exact.upper, 4) + "]",
-                    match.within_digits ? "yes" : "no"});
+                    match.within_digits() ? "yes" : "no"});
   }
   std::cout << aligned(rows, 0);
 }
