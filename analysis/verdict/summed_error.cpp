@@ -119,19 +119,20 @@ SummedError::Scan SummedError::sum_of(std::size_t first, std::size_t end) const 
 
 std::vector<FamilyTest> SummedError::white_families(double level,
                                                     std::span<const double> times) const {
-  const auto law_of = [](const Scan& sum) { return SquaresLaw({1.0, 1.0, 1.0}, sum.dimensions); };
-  const Scan whole = sum_of(0, scans_.size());
-  if (!(whole.dimensions > 0.0)) return {};
-  std::vector<MemberTest> all = {
-      ratio_test(Family::size, {.name = "all", .estimate = whole.ratio()}, law_of(whole))};
+  std::vector<MemberTest> all;
+  const auto add_sum = [&](Family family, Member member, std::size_t first, std::size_t end) {
+    const Scan sum = sum_of(first, end);
+    if (!(sum.dimensions > 0.0)) return;
+    member.estimate = sum.ratio();
+    const SquaresLaw law({1.0, 1.0, 1.0}, sum.dimensions);
+    all.push_back(ratio_test(family, std::move(member), law));
+  };
+  add_sum(Family::size, {.name = "all"}, 0, scans_.size());
   const std::size_t stretches = scans_.size() < 2 * kStretches ? 0 : kStretches;
   for (std::size_t k = 0; k < stretches; ++k) {
     const std::size_t first = k * scans_.size() / stretches;
     const std::size_t end = (k + 1) * scans_.size() / stretches;
-    const Scan sum = sum_of(first, end);
-    if (!(sum.dimensions > 0.0)) continue;
-    Member member{.from = times[first], .to = times[end - 1], .estimate = sum.ratio()};
-    all.push_back(ratio_test(Family::stretch, std::move(member), law_of(sum)));
+    add_sum(Family::stretch, {.from = times[first], .to = times[end - 1]}, first, end);
   }
   std::ranges::move(scan_tests(times), std::back_inserter(all));
   return judge_tests(all, level);

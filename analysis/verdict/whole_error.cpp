@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/verdict/whole_error.hpp"
 
-#include "analysis/statistics/squares_law.hpp"
 #include "engine/errors.hpp"
 
 #include <algorithm>
@@ -89,35 +88,25 @@ Summary AspectProducts::variance_of_scales() const {
 }
 
 DividedErrors::DividedErrors(std::vector<double> errors, std::size_t scans, std::size_t dimension)
-    : dimension_(dimension),
-      errors_(std::move(errors)),
-      is_there_(errors_.size(), 1),
-      counts_(scans * dimension) {
+    : dimension_(dimension), errors_(std::move(errors)), counts_(scans * dimension) {
   const std::size_t places = counts_.size();
-  std::vector<double> squares(places), scale(places);
-  const auto for_each_error = [&](const auto& visit) {  // run by run, as they lie in memory
-    for (std::size_t first = 0; first < errors_.size(); first += places) {
-      for (std::size_t k = 0; k < places; ++k) visit(errors_[first + k], is_there_[first + k], k);
+  std::vector<double> squares(places), scale(places, kNaN);
+  for (std::size_t first = 0; first < errors_.size(); first += places) {
+    for (std::size_t place = 0; place < places; ++place) {
+      const double error = errors_[first + place];
+      if (std::isnan(error)) continue;
+      squares[place] += error * error;
+      counts_[place] += 1.0;
     }
-  };
-  for_each_error([&](double& error, char& is_there, std::size_t place) {
-    if (std::isnan(error)) {
-      error = 0.0;
-      is_there = 0;
-    }
-    squares[place] += error * error;
-    counts_[place] += is_there;
-  });
-  for (std::size_t place = 0; place < places; ++place) {
-    const double n = counts_[place];
-    const bool is_usable = n >= kFewestErrors && squares[place] > 0.0;
-    if (is_usable) scale[place] = 1.0 / std::sqrt(squares[place] / n);
-    if (!is_usable) counts_[place] = 0.0;
   }
-  for_each_error([&](double& error, char& is_there, std::size_t place) {
-    error *= scale[place];
-    if (counts_[place] == 0.0) is_there = 0;
-  });
+  for (std::size_t place = 0; place < places; ++place) {
+    double& n = counts_[place];
+    if (!(n >= kFewestErrors && squares[place] > 0.0)) n = 0.0;
+    if (n > 0.0) scale[place] = 1.0 / std::sqrt(squares[place] / n);
+  }
+  for (std::size_t first = 0; first < errors_.size(); first += places) {
+    for (std::size_t place = 0; place < places; ++place) errors_[first + place] *= scale[place];
+  }
 }
 
 AspectProducts DividedErrors::products(const Aspect& aspect) const {
@@ -133,8 +122,10 @@ AspectProducts DividedErrors::products(const Aspect& aspect) const {
   rows.reserve(runs() * places.size());
   for (std::size_t run = 0; run < runs(); ++run) {
     for (const std::size_t place : places) {
-      rows.push_back(errors_[run * counts_.size() + place]);
-      found.terms_of_run[run] += is_there_[run * counts_.size() + place];
+      const double error = errors_[run * counts_.size() + place];
+      const bool is_there = !std::isnan(error);
+      rows.push_back(is_there ? error : 0.0);
+      found.terms_of_run[run] += is_there ? 1.0 : 0.0;
     }
   }
   found.products.add(rows, places.size());

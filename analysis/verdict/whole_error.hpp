@@ -54,8 +54,7 @@ class DividedErrors {
 
  private:
   std::size_t dimension_;
-  std::vector<double> errors_;  ///< {run, scan, component}, 0 where there is none
-  std::vector<char> is_there_;  ///< {run, scan, component}
+  std::vector<double> errors_;  ///< {run, scan, component}, NaN where there is none
   std::vector<double> counts_;  ///< {scan, component} of runs; 0 where they are too few
 };
 
