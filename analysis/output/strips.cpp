@@ -25,16 +25,6 @@ constexpr std::array kTooLarge = {Colour{0xfb, 0xd0, 0xb9}, Colour{0xf4, 0xa5, 0
                                   Colour{0x67, 0x00, 0x1f}};
 constexpr const char* kInsideColour = "#e9e9e9";
 
-std::vector<std::string> colours_of_levels() {
-  std::vector<std::string> colours;
-  for (int level = 0; level < kLevelsBelow; ++level)
-    colours.push_back(colour_within(kTooSmall, level / (kLevelsBelow - 1.0)));
-  for (int level = 0; level < kLevelsAbove; ++level)
-    colours.push_back(colour_within(kTooLarge, level / (kLevelsAbove - 1.0)));
-  colours.emplace_back(kInsideColour);
-  return colours;
-}
-
 bool is_in_band(double ratio, const Interval& band) {
   return ratio >= band.lower && ratio <= band.upper;
 }
@@ -88,8 +78,16 @@ ChartStrips::Row thinned(const StripRow& row, const std::vector<Stretch>& column
 }  // namespace
 
 const std::vector<std::string>& strip_colours() {
-  static const std::vector<std::string> colours = colours_of_levels();
-  return colours;
+  static const std::vector<std::string> all = [] {
+    std::vector<std::string> colours;
+    for (int level = 0; level < kLevelsBelow; ++level)
+      colours.push_back(colour_within(kTooSmall, level / (kLevelsBelow - 1.0)));
+    for (int level = 0; level < kLevelsAbove; ++level)
+      colours.push_back(colour_within(kTooLarge, level / (kLevelsAbove - 1.0)));
+    colours.emplace_back(kInsideColour);
+    return colours;
+  }();
+  return all;
 }
 
 int strip_level(double ratio, const Interval& band) {

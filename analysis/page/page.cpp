@@ -86,12 +86,11 @@ std::string html_figures(const Section& section, const fs::path& directory) {
 }
 
 /// HTML of a table or of HTML. Notes are opened by a "?", and cards have the text of leads.
-struct HtmlOf {
-  std::string operator()(const Section::Table& table) const { return html_table(table.table); }
-  std::string operator()(const Section::Html& html) const { return html.text; }
-  std::string operator()(const Section::Note&) const { return ""; }
-  std::string operator()(const Section::Lead&) const { return ""; }
-};
+std::string html_of(const Section::Block& block) {
+  if (const auto* table = std::get_if<Section::Table>(&block)) return html_table(table->table);
+  const auto* html = std::get_if<Section::Html>(&block);
+  return html == nullptr ? "" : html->text;
+}
 
 std::vector<std::string> notes_of(const Section& section) {
   std::vector<std::string> notes;
@@ -111,7 +110,7 @@ std::string html_of(const Section& section, const fs::path& directory) {
   const bool is_open = section.shown == Section::Shown::open;
   const std::string notes = html_paragraphs(notes_of(section));
   std::string body = html_explained(is_open ? html_heading(2, section.title) : "", notes);
-  for (const auto& block : section.blocks) body += std::visit(HtmlOf{}, block);
+  for (const auto& block : section.blocks) body += html_of(block);
   body += html_figures(section, directory);
   const std::string begin = "<section id=\"" + section.name + "\">\n";
   if (is_open) return begin + body + "</section>\n";

@@ -317,13 +317,9 @@ std::string shown(const Replay& replay) {
        {"nees", if_any("nees", [](const ReplayCell& cell) { return !cell.nees.empty(); })}});
 }
 
-std::size_t held_index(const ResultFile& file, std::uint64_t run) {
-  return static_cast<std::size_t>(std::ranges::find(file.runs(), run) - file.runs().begin());
-}
-
 /// Explains which run of how many is shown, why, and whether more is stored of it than of others.
 std::string which_run(const ResultFile& file, const Replay& replay) {
-  const std::size_t index = held_index(file, replay.run);
+  const std::size_t index = *chosen_run(file, replay.run);
   const std::uint64_t runs = runs_in(file);
   const std::string run = std::to_string(replay.run);
   if (runs == 1) return prose("replay", "only run", {{"run", run}});
@@ -383,7 +379,7 @@ Section replay_section(const ResultFile& file, const Replay& replay) {
       "moment is drawn in <a href=\"figures/replay.svg\">figures/replay.svg</a>.</p></noscript>\n" +
       html_data("replay-data", replay_json(replay)) + "</div>\n");
   section.add(std::vector{shown(replay)});
-  const std::string more = wanted(file, held_index(file, replay.run));
+  const std::string more = wanted(file, *chosen_run(file, replay.run));
   if (!more.empty()) section.add(std::vector{more});
   return section;
 }
