@@ -46,16 +46,14 @@ h5::Handle write_times(const h5::Handle& group, const std::string& name,
 
 void write_references(const h5::Handle& cell_group, const StudyAnalysis& study,
                       const CellAnalysis& cell, const Times& times) {
-  if (cell.get<ReferenceAnalyses>().empty()) return;
+  const auto& all = cell.get<ReferenceAnalyses>();
+  if (all.empty()) return;
   const auto references = h5::create_group(cell_group, "references");
-  for (std::size_t r = 0; r < cell.get<ReferenceAnalyses>().size(); ++r) {
+  for (std::size_t r = 0; r < all.size(); ++r) {
     const auto group = h5::create_group(references, study.references[r].name);
     write_row(group, reference_numbers(cell, r));
-    if (cell.get<ReferenceAnalyses>()[r].error_over_time.empty()) continue;
-    if (study.references[r].times.empty()) continue;
-    write_columns(group,
-                  {{"error_over_time", "m", cell.get<ReferenceAnalyses>()[r].error_over_time}},
-                  &times.fixes[r]);
+    if (all[r].error_over_time.empty() || study.references[r].times.empty()) continue;
+    write_columns(group, {{"error_over_time", "m", all[r].error_over_time}}, &times.fixes[r]);
   }
 }
 

@@ -82,11 +82,6 @@ void print_cautions(std::ostream& out, const StudyAnalysis& study, std::size_t w
   if (!sentences.empty()) out << '\n';
 }
 
-/// Sections with the references of a recorded drive without a true path.
-bool is_in_summary(const Section& section) {
-  return section.name == "drive" || section.name == "references";
-}
-
 }  // namespace
 
 void print_sentences(std::ostream& out, const StudyAnalysis& study, std::size_t width) {
@@ -107,7 +102,8 @@ void print_summary(std::ostream& out, const StudyAnalysis& study, std::size_t wi
     out << '\n';
   } else {
     for (const Section& section : terminal_sections(study)) {
-      if (is_in_summary(section)) print_section_tables(out, section, width);
+      const bool has_references = section.name == "drive" || section.name == "references";
+      if (has_references) print_section_tables(out, section, width);
     }
   }
   print_cautions(out, study, width);
