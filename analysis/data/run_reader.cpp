@@ -57,7 +57,7 @@ void RunReader::read_path(std::size_t i, std::vector<double>& out) const {
   if (!file_->description().drives.empty()) out.resize(scans_of(i) * 3);  // rows are scans
 }
 
-void RunReader::read_final_map(std::size_t i, RunRows& rows, Scratch& scratch) const {
+void RunReader::read_final_map(std::size_t i, RunRows& rows) const {
   rows.final_map.reset();
   const bool is_final = cell_->has(kFinalMapSeen);
   const std::string prefix = is_final ? "final_map_" : "map_";
@@ -66,11 +66,12 @@ void RunReader::read_final_map(std::size_t i, RunRows& rows, Scratch& scratch) c
   // A mean over weights that add up to one but for rounding.
   if (!rows.map_size.empty() &&
       rows.map_size.back() > static_cast<double>(landmarks) + kRoundingOfCounts)
-    return;  // record.map_rows left part of it out
+    return;                 // record.map_rows left part of it out
+  std::vector<double> all;  // at every scan, or at the last one
   const auto last = [&](const char* name, std::size_t width) {
-    read_whole(prefix + name, i, scratch);
+    read_whole(prefix + name, i, all);
     const std::size_t maps = is_final ? 1 : scans_of(i);
-    return std::span<const double>(scratch).first(maps * landmarks * width).last(landmarks * width);
+    return std::span<const double>(all).first(maps * landmarks * width).last(landmarks * width);
   };
   FinalMap& map = rows.final_map.emplace();
   for (const double one : last("seen", 1)) map.seen.push_back(one != 0.0 ? 1 : 0);
@@ -126,7 +127,7 @@ void RunReader::read_particles(std::size_t i, RunRows& rows) const {
   read_scans("log_weight", cell_->particles, i, rows.log_weight);
 }
 
-void RunReader::read(std::size_t i, RunRows& rows, Scratch& scratch) const {
+void RunReader::read(std::size_t i, RunRows& rows) const {
   file_->expect_whole(*cell_, i);
   read_truth(i, rows.truth);
   read_at_scans("pose_mean", 3, i, rows.spread.mean);
@@ -144,7 +145,7 @@ void RunReader::read(std::size_t i, RunRows& rows, Scratch& scratch) const {
   read_path(i, rows.path);
   read_scans("map_size", 1, i, rows.map_size);
   read_scans("rotation_information", 1, i, rows.rotation_information);
-  read_final_map(i, rows, scratch);
+  read_final_map(i, rows);
   read_whole("joint_mean", i, rows.joint.mean);
   read_whole("joint_covariance", i, rows.joint.covariance);
   read_whole("error", i, rows.error.value);
@@ -160,8 +161,7 @@ void RunReader::read(std::size_t i, RunRows& rows, Scratch& scratch) const {
 
 RunRows read_run(const ResultFile& file, const StoredCell& cell, std::size_t i) {
   RunRows rows;
-  RunReader::Scratch scratch;
-  RunReader(file, cell, Reach::full_run).read(i, rows, scratch);
+  RunReader(file, cell, Reach::full_run).read(i, rows);
   return rows;
 }
 

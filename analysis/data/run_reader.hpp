@@ -33,7 +33,7 @@ inline RunDrive drive_of_run(const ResultFile& file, std::uint64_t run) {
 enum class Reach : std::uint8_t { every_run, full_run };
 
 /// Reads the runs of one cell at its scans. Any number of threads may call read(), each with its
-/// own rows and scratch. The file and the cell must outlive it.
+/// own rows. The file and the cell must outlive it.
 class RunReader {
  public:
   RunReader(const ResultFile& file, const StoredCell& cell, Reach reach = Reach::every_run);
@@ -41,12 +41,9 @@ class RunReader {
   /// Number of particles of the cell; 0 if it has none.
   std::size_t particles() const { return cell_->particles; }
 
-  /// Memory for values that are read and not kept.
-  using Scratch = std::vector<double>;
-
   /// Fills `rows` with run index `i` (0-based in the file), which is complete. Throws StudyError if
   /// the run is damaged (ResultFile::expect_whole()).
-  void read(std::size_t i, RunRows& rows, Scratch& scratch) const;
+  void read(std::size_t i, RunRows& rows) const;
 
  private:
   /// Returns whether run index `i` has the column, and is to give it.
@@ -54,7 +51,7 @@ class RunReader {
   void read_truth(std::size_t i, std::vector<double>& out) const;
   void read_path(std::size_t i, std::vector<double>& out) const;
   /// The map after the last scan, also of columns that hold every one.
-  void read_final_map(std::size_t i, RunRows& rows, Scratch& scratch) const;
+  void read_final_map(std::size_t i, RunRows& rows) const;
   /// A column over time, of which scans are kept; `width` numbers a row. Empty where not stored.
   void read_at_scans(std::string_view column, std::size_t width, std::size_t i,
                      std::vector<double>& out) const;

@@ -153,7 +153,7 @@ CellSums sums_of_block(const CellRuns& cell, std::span<const std::size_t> runs,
   CellSums sums(criteria);
   MeasuredRun run;
   for (const std::size_t i : runs) {
-    cell.reader->read(i, run.rows, run.scratch);
+    cell.reader->read(i, run.rows);
     run.measure(criteria, cell.reader->particles());
     sums.add(run);
   }

@@ -137,7 +137,6 @@ RunCriteria criteria_of(const ResultFile& file, double level, double within = kU
 struct MeasuredRun {
   std::span<const double> times;  ///< [s] of its scans
   RunRows rows;
-  RunReader::Scratch scratch;
   RunMetrics metrics;
   std::vector<ReferenceRun> references;
   std::vector<DriveScores> drives;      ///< by each of RunCriteria::judged_fixes

@@ -6,7 +6,6 @@
 #include "analysis/output/number_text.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <tuple>

@@ -10,7 +10,6 @@
 #include "engine/wrapped_text.hpp"
 
 #include <algorithm>
-#include <array>
 #include <fstream>
 #include <iterator>
 #include <string_view>

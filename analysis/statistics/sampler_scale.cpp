@@ -7,7 +7,6 @@
 #include <boost/math/distributions/fisher_f.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace montecarta::analysis {

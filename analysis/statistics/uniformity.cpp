@@ -7,7 +7,6 @@
 #include <boost/math/distributions/poisson.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <vector>
 

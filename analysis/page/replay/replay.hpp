@@ -2,7 +2,7 @@
 #pragma once
 
 #include "analysis/figures/path_figure.hpp"
-#include "analysis/metrics/verdict_table.hpp"
+#include "analysis/output/text_table.hpp"
 #include "analysis/statistics/nees_bounds.hpp"
 #include "engine/records/result_file.hpp"
 

@@ -35,9 +35,8 @@ TEST_F(RunsInFull, GiveAnAnalysisWhatEveryRunHas) {
   const StoredCell& cell = file.cells()[0];
   const RunReader reader(file, cell);
   RunRows rows;
-  RunReader::Scratch scratch;
   for (const std::size_t run : {0U, 3U}) {
-    reader.read(run, rows, scratch);
+    reader.read(run, rows);
     EXPECT_THAT(rows.spread.covariance, Not(IsEmpty()));
     EXPECT_THAT(rows.ancestor, IsEmpty());
     EXPECT_THAT(rows.particle_pose, IsEmpty());
@@ -52,8 +51,7 @@ TEST_F(RunsInFull, AreRefusedIfAScansColumnHasOtherAxes) {
   ASSERT_NE(nis, nullptr);
   const_cast<engine::Column*>(nis)->axes = {engine::Axis::time};  // in a file without its seal
   RunRows rows;
-  RunReader::Scratch scratch;
-  EXPECT_THAT([&] { RunReader(file, cell).read(0, rows, scratch); },
+  EXPECT_THAT([&] { RunReader(file, cell).read(0, rows); },
               testing::ThrowsMessage<StudyError>(HasSubstr("nis has other axes")));
 }
 
@@ -83,8 +81,7 @@ TEST_F(RunsInFull, AreTheSameInAFileThatAnotherProgramPacked) {
   const RunReader reader(other, other.cells()[0], Reach::full_run);
   Parallel(Backend::tbb, 3).for_each(6, [&](std::size_t) {
     RunRows found;
-    RunReader::Scratch scratch;
-    reader.read(1, found, scratch);
+    reader.read(1, found);
     EXPECT_EQ(found.truth, wanted.truth);
     EXPECT_EQ(found.spread.covariance, wanted.spread.covariance);
     EXPECT_EQ(found.resampled, wanted.resampled);

@@ -100,7 +100,7 @@ class BlocksOfRuns : public testing::TestWithParam<const char*> {
     MeasuredRun run;
     for (std::size_t i = 0; i < file.runs().size(); ++i) {
       if (file.status(stored)[i] != RunStatus::complete) continue;
-      reader.read(i, run.rows, run.scratch);
+      reader.read(i, run.rows);
       run.measure(criteria, stored.particles);
       sums.add(run);
     }
