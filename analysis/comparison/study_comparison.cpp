@@ -182,7 +182,7 @@ std::string pairs_text(const CellComparison& row) {
 /// "NEES ratio higher (277 times)".
 std::string finding_of(const CellComparison& row, double level) {
   const std::string finding = name_in_tables(*row.score) + ' ' + row.verdict(level);
-  return std::isnan(row.ratio) ? finding : finding + " (" + readable(row.ratio) + " times)";
+  return std::isfinite(row.ratio) ? finding + " (" + readable(row.ratio) + " times)" : finding;
 }
 
 /// "fast against ekf: NEES ratio higher (277 times); undecided: position_rmse.", of the rows of one

@@ -51,12 +51,6 @@ void judge_together(std::vector<FamilyTest>& families, double level) {
   }
 }
 
-namespace {
-
-constexpr double kLeastSpent = 1e-10;  // a level nearer to 1 has no exact complement
-
-}  // namespace
-
 double spent(double alpha, double information) {
   if (!(information > 0.0)) return 0.0;
   const boost::math::normal normal;
@@ -70,6 +64,7 @@ double level_of_look(double level, std::span<const std::uint64_t> looks, std::ui
   const auto information = [&](std::uint64_t n) {
     return static_cast<double>(n) / static_cast<double>(looks.back());
   };
+  constexpr double kLeastSpent = 1e-10;  // a level nearer to 1 has no exact complement
   const double before = look == looks.begin() ? 0.0 : spent(1.0 - level, information(*(look - 1)));
   return 1.0 - std::max(spent(1.0 - level, information(*look)) - before, kLeastSpent);
 }

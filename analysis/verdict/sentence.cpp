@@ -3,7 +3,6 @@
 #include "analysis/output/number_text.hpp"
 #include "analysis/statistics/squares_law.hpp"
 #include "analysis/verdict/verdict.hpp"
-#include "engine/errors.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -302,24 +301,6 @@ std::string in_words(const Verdict& verdict) {
 std::string sentence(const std::string& label, const Verdict& verdict) {
   const std::string exceptions = exceptions_of(verdict);
   return sentence_of(label, verdict) + (exceptions.empty() ? "." : " (" + exceptions + ").");
-}
-
-GateAnswer gate(const Verdict& verdict, const Allowance& allowed) {
-  if (verdict.failed > allowed.failed || verdict.unusable > allowed.unusable) {
-    return GateAnswer::inconsistent;
-  }
-  switch (verdict.answer) {
-    case Answer::untested:
-      throw StudyError(
-          "no errors to judge (no complete run, no covariance, or too few effective draws at all "
-          "scans): make more runs, have covariance in record.columns, or take more particles");
-    case Answer::consistent:
-      return GateAnswer::consistent;
-    case Answer::undecided:
-      return GateAnswer::undecided;
-    default:
-      return GateAnswer::inconsistent;
-  }
 }
 
 }  // namespace montecarta::analysis

@@ -39,7 +39,8 @@ MemberTest ratio_test(Family family, Member member, const SquaresLaw& law) {
           [law, ratio](double level) { return law.interval(ratio, level); }};
 }
 
-std::vector<FamilyTest> judge_tests(std::span<const MemberTest> tests, double level) {
+std::vector<FamilyTest> judge_tests(std::vector<MemberTest> tests, double level) {
+  std::ranges::stable_sort(tests, {}, &MemberTest::family);
   std::vector<FamilyTest> families;
   for (const MemberTest& one : tests) {
     if (families.empty() || families.back().family != one.family) {
@@ -103,9 +104,9 @@ MemberTest SummedError::size_test() const {
 
 std::vector<FamilyTest> SummedError::families(double level, std::span<const double> times) const {
   if (!(most_runs() > 0.0)) return {};
-  std::vector<MemberTest> all = {size_test()};
-  std::ranges::move(scan_tests(times), std::back_inserter(all));
-  return judge_tests(all, level);
+  std::vector<MemberTest> all = scan_tests(times);
+  all.push_back(size_test());
+  return judge_tests(std::move(all), level);
 }
 
 SummedError::Scan SummedError::sum_of(std::size_t first, std::size_t end) const {
@@ -119,7 +120,7 @@ SummedError::Scan SummedError::sum_of(std::size_t first, std::size_t end) const 
 
 std::vector<FamilyTest> SummedError::white_families(double level,
                                                     std::span<const double> times) const {
-  std::vector<MemberTest> all;
+  std::vector<MemberTest> all = scan_tests(times);
   const auto add_sum = [&](Family family, Member member, std::size_t first, std::size_t end) {
     const Scan sum = sum_of(first, end);
     if (!(sum.dimensions > 0.0)) return;
@@ -134,8 +135,7 @@ std::vector<FamilyTest> SummedError::white_families(double level,
     const std::size_t end = (k + 1) * scans_.size() / stretches;
     add_sum(Family::stretch, {.from = times[first], .to = times[end - 1]}, first, end);
   }
-  std::ranges::move(scan_tests(times), std::back_inserter(all));
-  return judge_tests(all, level);
+  return judge_tests(std::move(all), level);
 }
 
 }  // namespace montecarta::analysis

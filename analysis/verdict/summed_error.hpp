@@ -25,8 +25,8 @@ struct MemberTest {
 /// A ratio of squared errors to the expected ones, member.estimate, with its law.
 MemberTest ratio_test(Family family, Member member, const SquaresLaw& law);
 
-/// Families in the order of their tests, with intervals, judged together at `level`.
-std::vector<FamilyTest> judge_tests(std::span<const MemberTest> tests, double level);
+/// Families in the order of kFamilies, with intervals, judged together at `level`.
+std::vector<FamilyTest> judge_tests(std::vector<MemberTest> tests, double level);
 
 /// Adds up the NEES of every scan over runs, and tests the sums of single scans, which are exactly
 /// chi-square for any correlations between the errors of a run (STATISTICS 5).

@@ -2,6 +2,7 @@
 #include "analysis/verdict/verdict.hpp"
 
 #include "analysis/statistics/squares_law.hpp"
+#include "engine/errors.hpp"
 
 #include <algorithm>
 #include <array>
@@ -118,6 +119,24 @@ Verdict judge(std::vector<FamilyTest> families, double level, double within, std
     verdict.more_runs = are_few ? kFewestRunsOfTraces - runs : more_runs_of(verdict, runs);
   }
   return verdict;
+}
+
+GateAnswer gate(const Verdict& verdict, const Allowance& allowed) {
+  if (verdict.failed > allowed.failed || verdict.unusable > allowed.unusable) {
+    return GateAnswer::inconsistent;
+  }
+  switch (verdict.answer) {
+    case Answer::untested:
+      throw StudyError(
+          "no errors to judge (no complete run, no covariance, or too few effective draws at all "
+          "scans): make more runs, have covariance in record.columns, or take more particles");
+    case Answer::consistent:
+      return GateAnswer::consistent;
+    case Answer::undecided:
+      return GateAnswer::undecided;
+    default:
+      return GateAnswer::inconsistent;
+  }
 }
 
 }  // namespace montecarta::analysis

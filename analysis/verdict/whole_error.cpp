@@ -13,7 +13,6 @@ namespace {
 
 constexpr double kLeastShare = 0.5;    // of errors that two runs have in common
 constexpr double kFewestErrors = 3.0;  // of which a root mean square is taken
-
 constexpr std::size_t kMostKeptRuns = 256;
 constexpr double kLeastShareOfSpread = 0.98;  // of errors that two runs have in common
 constexpr double kMostSingularSamples = 0.1;
@@ -24,15 +23,15 @@ Interval interval_of_mean(const Summary& mean, double level) {
   return {mean.mean - half, mean.mean + half};
 }
 
-double t_of(const Summary& mean) { return mean.mean / mean.standard_error(); }
-
 /// The mean over runs of a number that is zero if the filter is consistent.
 void add_zero_mean(Family family, const std::string& name, const Summary& mean,
                    std::vector<MemberTest>& all) {
   if (mean.n < kFewestJudgedRuns) return;
   Member member{.name = name, .estimate = mean.mean};
   const bool is_zero = mean.mean == 0.0 && mean.sd == 0.0;
-  member.p = is_zero ? 1.0 : t_p_value(t_of(mean), static_cast<double>(mean.n) - 1.0);
+  member.p = is_zero
+                 ? 1.0
+                 : t_p_value(mean.mean / mean.standard_error(), static_cast<double>(mean.n) - 1.0);
   all.push_back(
       {family, std::move(member), [mean](double level) { return interval_of_mean(mean, level); }});
 }
@@ -41,7 +40,7 @@ void add_zero_mean(Family family, const std::string& name, const Summary& mean,
 MemberTest spread_test(const Summary& variance) {
   const auto root = [](double value) { return std::sqrt(std::max(0.0, value)); };
   Member member{.name = "runs", .estimate = root(variance.mean)};
-  const double t = t_of(variance);
+  const double t = variance.mean / variance.standard_error();
   member.p = t > 0.0 ? 0.5 * t_p_value(t, static_cast<double>(variance.n) - 1.0) : 1.0;
   return {Family::between_runs, std::move(member), [variance, root](double level) {
             const Interval of_variance = interval_of_mean(variance, level);
@@ -114,9 +113,13 @@ AspectProducts DividedErrors::products(const Aspect& aspect) const {
   const auto n = static_cast<double>(runs());
   std::vector<std::size_t> places;
   for (std::size_t s = aspect.first_scan; s < aspect.end_scan; ++s) {
+    double here = 0.0;
     for (std::size_t k = aspect.first_component; k < aspect.end_component; ++k) {
-      places.push_back(s * dimension_ + k);
+      const double count = counts_[places.emplace_back(s * dimension_ + k)];
+      here += count / n;
+      found.common_terms += count * std::max(count - 1.0, 0.0) / (n * (n - 1.0));
     }
+    found.constant_root += std::sqrt(here);
   }
   std::vector<double> rows;
   rows.reserve(runs() * places.size());
@@ -129,16 +132,6 @@ AspectProducts DividedErrors::products(const Aspect& aspect) const {
     }
   }
   found.products.add(rows, places.size());
-  for (std::size_t s = aspect.first_scan; s < aspect.end_scan; ++s) {
-    double here = 0.0;
-    for (std::size_t k = aspect.first_component; k < aspect.end_component; ++k) {
-      here += counts_[s * dimension_ + k] / n;
-    }
-    found.constant_root += std::sqrt(here);
-  }
-  for (const std::size_t place : places) {
-    found.common_terms += counts_[place] * std::max(counts_[place] - 1.0, 0.0) / (n * (n - 1.0));
-  }
   return found;
 }
 
@@ -243,10 +236,8 @@ bool WholeError::are_most_samples_whole() const {
   return whole_samples_ >= (1.0 - kMostSingularSamples) * judged;
 }
 
-std::vector<MemberTest> WholeError::variances(const ErrorNames& names,
-                                              const DividedErrors& whitened,
-                                              MemberTest& spread) const {
-  std::vector<MemberTest> stretches;
+void WholeError::add_variances(const ErrorNames& names, const DividedErrors& whitened,
+                               std::vector<MemberTest>& all) const {
   AspectProducts size(whitened.runs());
   for (std::size_t s = 0; s < stretches_; ++s) {
     const std::size_t first = first_scan(s), end = first_scan(s + 1);
@@ -255,22 +246,19 @@ std::vector<MemberTest> WholeError::variances(const ErrorNames& names,
     if (stretches_ == 1 || !(found.terms() > 0.0)) continue;
     Member member{.from = names.times[first], .to = names.times[end - 1]};
     member.estimate = stretch_[s].ratio();
-    stretches.push_back(
+    all.push_back(
         ratio_test(Family::stretch, member, SquaresLaw(found.traces(), stretch_[s].runs())));
   }
-  std::vector<MemberTest> all;
-  if (!(size.terms() > 0.0)) return all;
+  if (!(size.terms() > 0.0)) return;
   if (!are_most_samples_whole()) all.push_back(nees_.size_test());
   all.push_back(ratio_test(Family::size, {.name = "all", .estimate = size_.ratio()},
                            SquaresLaw(size.traces(), size_.runs())));
   add_components(names, all);
-  std::ranges::move(stretches, std::back_inserter(all));
   // Runs without all samples vary more between each other than the products of two of them show.
   const bool are_alike = size.share() > kLeastShareOfSpread;
   if (are_alike && whitened.runs() >= kFewestRunsOfSpread) {
-    spread = spread_test(size.variance_of_scales());
+    all.push_back(spread_test(size.variance_of_scales()));
   }
-  return all;
 }
 
 void WholeError::add_components(const ErrorNames& names, std::vector<MemberTest>& all) const {
@@ -303,13 +291,10 @@ std::vector<FamilyTest> WholeError::families(double level, const ErrorNames& nam
     return nees_.most_runs() < kFewestJudgedRuns ? std::vector<FamilyTest>{}
                                                  : nees_.families(level, names.times);
   }
-  MemberTest spread;
-  std::vector<MemberTest> all =
-      variances(names, DividedErrors(whitened_, scans_, dimension_), spread);
-  std::ranges::move(nees_.scan_tests(names.times), std::back_inserter(all));
+  std::vector<MemberTest> all = nees_.scan_tests(names.times);
+  add_variances(names, DividedErrors(whitened_, scans_, dimension_), all);
   add_means(names, all);
-  if (spread.interval) all.push_back(std::move(spread));
-  return judge_tests(all, level);
+  return judge_tests(std::move(all), level);
 }
 
 }  // namespace montecarta::analysis

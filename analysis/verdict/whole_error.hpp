@@ -114,8 +114,8 @@ class WholeError {
   void add_squares(const WhitenedRun& run);
   void add_means(const WhitenedRun& run);
   bool are_most_samples_whole() const;
-  std::vector<MemberTest> variances(const ErrorNames& names, const DividedErrors& whitened,
-                                    MemberTest& spread) const;
+  void add_variances(const ErrorNames& names, const DividedErrors& whitened,
+                     std::vector<MemberTest>& all) const;
   void add_components(const ErrorNames& names, std::vector<MemberTest>& all) const;
   void add_means(const ErrorNames& names, std::vector<MemberTest>& all) const;
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/output/text_table.hpp"
 #include "engine/errors.hpp"
+#include "engine/records/result_layout.hpp"
 #include "engine/records/sum_groups.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/stored_result.hpp"
@@ -71,17 +72,20 @@ class StudyStatus {
 /// The depth of the check of a file.
 enum class Depth { statuses, every_byte };
 
-/// The error about the first stored run that does not match its fingerprint; empty if all match.
+/// A sentence such as "run 7 is damaged" about the first stored run that does not match its
+/// fingerprint; empty if all match.
 std::string defect_of(const ResultFile& file) {
-  try {
-    for (const StoredCell& cell : file.cells()) {
-      const std::vector<RunStatus> status = file.status(cell);
-      for (std::size_t i = 0; i < status.size(); ++i) {
-        if (is_stored(status[i])) file.expect_whole(cell, i);
-      }
+  const ResultSlabs slabs = find_slabs(file.path(), file.description());
+  const PosixFile bytes(file.path(), PosixFile::Mode::read);
+  std::vector<std::byte> buffer;
+  for (std::size_t c = 0; c < slabs.cells.size(); ++c) {
+    const std::vector<RunStatus> status = file.status(file.cells()[c]);
+    for (std::size_t i = 0; i < status.size(); ++i) {
+      if (!is_stored(status[i])) continue;
+      if (!truth_is_whole(bytes, slabs, i, buffer) ||
+          !run_is_whole(bytes, slabs.cells[c], i, buffer))
+        return "run " + std::to_string(file.runs()[i]) + " does not fit its fingerprint";
     }
-  } catch (const StudyError& error) {
-    return error.what();
   }
   return {};
 }
