@@ -97,9 +97,15 @@ class Compare : public BlinkProgram {
 TEST_F(Compare, SaysWhatEachCellHasMoreThanTheBaseline) {
   const Called called = call({"compare", "out.h5", "--baseline", "ekf_slam", "--csv", "tables"});
   EXPECT_EQ(called.code, 0) << called.err;
-  for (const char* words : {"position_rmse [m]", "heading_rmse [rad]", "NEES ratio",
-                            "cpu_seconds [s]", "row beats", "Holm"}) {
+  const Called detailed = call({"compare", "out.h5", "--baseline", "ekf_slam", "--all"});
+  for (const char* words :
+       {"position_rmse [m]", "heading_rmse [rad]", "NEES ratio", "cpu_seconds [s]"}) {
     EXPECT_THAT(called.out, HasSubstr(words));
+    EXPECT_THAT(detailed.out, HasSubstr(words));
+  }
+  for (const char* words : {"row beats", "Holm"}) {
+    EXPECT_THAT(called.out, testing::Not(HasSubstr(words)));
+    EXPECT_THAT(detailed.out, HasSubstr(words));
   }
   EXPECT_THAT(text_of("tables/comparison.csv"), StartsWith("metric,units,cell,baseline,verdict,"));
   EXPECT_THAT(text_of("tables/wins.csv"), HasSubstr("\nposition_rmse,fastslam2_m10,ekf_slam,"));
