@@ -344,15 +344,21 @@ std::vector<std::string> comparison_sentences(const Comparisons& comparisons) {
 TextTable difference_table(const Comparisons& comparisons) {
   TextTable table{.keys = 2};
   const std::string heading_of_difference = "difference [" + level_text(comparisons.level) + "]";
+  const bool are_all_paired = std::ranges::none_of(comparisons.rows, [](const auto& row) {
+    return row.without + row.baseline_without + row.neither + row.unpaired > 0;
+  });
   for (const CellComparison& row : comparisons.rows) {
     const double difference = row.difference / row.expectation;
-    table.add({{"what", heading(name_in_tables(*row.score), row.score->units), Align::left},
-               {"cell", row.cell, Align::left},
-               {heading_of_difference, row.has_heavy_tail
-                                           ? readable(difference) + " (heavy tail)"
-                                           : with_interval(difference, shown_interval(row))},
-               {"ratio", readable(row.ratio)},
-               {"runs won", percent(row.wins.share())}});
+    std::vector<TextTable::Entry> entries = {
+        {"what", heading(name_in_tables(*row.score), row.score->units), Align::left},
+        {"cell", row.cell, Align::left},
+        {heading_of_difference, row.has_heavy_tail
+                                    ? readable(difference) + " (heavy tail)"
+                                    : with_interval(difference, shown_interval(row))},
+        {"ratio", readable(row.ratio)},
+        {"runs won", percent(row.wins.share())}};
+    if (!are_all_paired) entries.push_back({"runs", pairs_text(row), Align::left});
+    table.add(entries);
   }
   return table;
 }

@@ -22,7 +22,7 @@ struct Wins {
   double p = 1.0;       ///< of the exact sign test
   double p_holm = 1.0;  ///< adjusted for all tests of its table
 
-  /// Share of the runs that ended in both cells; NaN if there are none.
+  /// Share of all counted runs that the first cell won; NaN if there are none.
   double share() const;
 };
 

@@ -286,7 +286,7 @@ Section comparison_section(const StudyAnalysis& study, const StudyComparison& co
   Section section{"comparison", "Compared with " + all.baseline};
   section.summary = comparison_summary(all);
   section.is_for_terminal = false;
-  section.add(comparison_sentences(all));
+  section.add_html(html_paragraphs(comparison_sentences(all)));
   section.add("comparison", comparison_table(all));
   section.add(comparison_notes(study, all));
   for (const WinMatrix& matrix : comparison.matrices) {

@@ -62,7 +62,13 @@ std::uint64_t write_at_once(const fs::path& path, const ResultDescription& descr
                             const Fill& fill, Existing existing) {
   fs::path draft = path;
   PosixFile file = lay_out_new(draft += ".new", description, fill);
-  file.rename(path, existing);
+  try {
+    file.rename(path, existing);
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove(draft, ignored);
+    throw;
+  }
   return file.size();
 }
 

@@ -36,7 +36,7 @@ PosixFile lay_out_new(const std::filesystem::path& path, const ResultDescription
                       const Fill& fill = nullptr);
 
 /// Writes a result of which all numbers are known to a temporary name, then gives it its name.
-/// Returns its size [byte].
+/// Returns its size [byte]. Leaves no file under the temporary name if that fails.
 std::uint64_t write_at_once(const std::filesystem::path& path, const ResultDescription& description,
                             const Fill& fill, Existing existing);
 

@@ -74,9 +74,22 @@ void print_tests(const StudyAnalysis& study, const StudyComparison& comparison) 
   if (!comparison.matrices.empty()) print_notes({win_note(comparisons.level)});
 }
 
+/// Names the scores by which no cell can be compared.
+void print_absent(std::span<const Score* const> scores, const Comparisons& comparisons) {
+  for (const Score* score : scores) {
+    if (std::ranges::find(comparisons.rows, score, &CellComparison::score) !=
+        comparisons.rows.end())
+      continue;
+    print_notes({std::string(score->name) + ": nothing to compare (" + comparisons.baseline +
+                 " or all other cells have no such number): montecarta info FILE.h5 says what is "
+                 "stored"});
+  }
+}
+
 void print(const StudyAnalysis& study, const StudyComparison& comparison, bool with_tests) {
   const std::size_t width = engine::output_width();
   print_sentences(std::cout, study, width);
+  if (comparison.comparisons.rows.empty()) return;
   for (const std::string& sentence : comparison_sentences(comparison.comparisons)) {
     std::cout << engine::wrapped(sentence, width, 2);
   }
@@ -101,6 +114,7 @@ int compare_command(const Arguments& arguments) {
                                       arguments.number("within", kLeastMargin, kMostMargin));
   const StudyComparison comparison = compare_study(study, baseline, scores);
   print(study, comparison, arguments.has("all"));
+  if (arguments.has("metric")) print_absent(scores, comparison.comparisons);
   if (directory) write_comparison_csv(comparison, *directory);
   return kDone;
 }

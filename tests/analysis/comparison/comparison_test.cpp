@@ -107,6 +107,7 @@ TEST(CompareCells, CountsFailuresAsLostAndLeavesThemOutOfDifferences) {
   EXPECT_NEAR(row.wins.share(), 1.0 / 12.0, 1e-15);
   EXPECT_EQ(row.verdict(0.95), "worse");  // although its one complete run is the better one
   EXPECT_TRUE(std::isnan(row.interval.lower));
+  EXPECT_EQ(difference_table(found).rows.at(0).back(), "1, 11 lost by failure");
 }
 
 TEST(CompareCells, GivesNoRatioOfAScoreWithoutANaturalZero) {

@@ -122,6 +122,7 @@ TEST_F(Compare, NamesTheNearestSpelling) {
   const std::string both = call_with(words, {"position_error, nees"}).out;
   EXPECT_THAT(both, HasSubstr("position_error [m]"));
   EXPECT_THAT(both, testing::Not(HasSubstr("heading_rmse")));
+  EXPECT_THAT(call_with(words, {"ess"}).out, HasSubstr("ess: nothing to compare"));
 }
 
 }  // namespace
