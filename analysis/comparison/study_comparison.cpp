@@ -179,14 +179,15 @@ std::string pairs_text(const CellComparison& row) {
   return text;
 }
 
-/// "NEES ratio higher (277 times)".
+/// "NEES ratio higher (277 times as large)".
 std::string finding_of(const CellComparison& row, double level) {
   const std::string finding = name_in_tables(*row.score) + ' ' + row.verdict(level);
-  return std::isfinite(row.ratio) ? finding + " (" + readable(row.ratio) + " times)" : finding;
+  return std::isfinite(row.ratio) ? finding + " (" + readable(row.ratio) + " times as large)"
+                                  : finding;
 }
 
-/// "fast against ekf: NEES ratio higher (277 times); undecided: position_rmse.", of the rows of one
-/// cell.
+/// "fast against ekf: NEES ratio higher (277 times as large); undecided: position_rmse." The rows
+/// are of one cell.
 std::string sentence_of(std::span<const CellComparison> rows, const Comparisons& all) {
   std::string decided, undecided;
   for (const CellComparison& row : rows) {

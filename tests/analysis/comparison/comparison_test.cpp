@@ -205,10 +205,10 @@ TEST(CompareCells, SayInOneSentenceWhatIsDecidedAndWhatIsNot) {
   const Comparisons found =
       compare_cells(compared_study({cell("base", 5.0), cell("bold", 50.0), cell("twin", 5.0)}),
                     "base", scores({"position_rmse", "nees"}));
-  EXPECT_THAT(
-      comparison_sentences(found),
-      ElementsAre("bold against base: NEES ratio higher (9.83 times); undecided: position_rmse.",
-                  "twin against base: undecided: position_rmse, NEES ratio."));
+  EXPECT_THAT(comparison_sentences(found),
+              ElementsAre("bold against base: NEES ratio higher (9.83 times as large); "
+                          "undecided: position_rmse.",
+                          "twin against base: undecided: position_rmse, NEES ratio."));
   EXPECT_THAT(difference_table(found).rows[0],
               ElementsAre("position_rmse [m]", "bold", "0.00", "1.00", "0.0 %"));
 }
