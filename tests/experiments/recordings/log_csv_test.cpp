@@ -190,6 +190,14 @@ TEST(CheckLog, WantsEachPart) {
       {[](auto& log) { log.references[1].name = "reference"; }, "references called reference"},
       {[](auto& log) { log.references[1].name = "../x"; }, "is no name"},
       {[](auto& log) { log.references[0].heading.pop_back(); }, "or headings"},
+      {[](auto& log) {
+         log.scans.push_back({5.2, {}});
+       },
+       "nothing"},
+      {[](auto& log) {
+         log.scans.push_back({5.4, {}});
+       },
+       "the last record is at 0.3"},
   });
 }
 
