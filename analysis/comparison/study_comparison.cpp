@@ -16,8 +16,10 @@
 namespace montecarta::analysis {
 namespace {
 
+/// A failed run is lost, unless neither side of the score is better.
 Wins wins_of(const PairedRuns& pairs, const Score& score) {
-  Wins wins{pairs.left_alone, pairs.right_alone, pairs.neither};
+  Wins wins;
+  if (score.better != Better::neither) wins = {pairs.left_alone, pairs.right_alone, pairs.neither};
   for (std::size_t i = 0; i < pairs.left.size(); ++i) {
     const double behind = disadvantage(score, pairs.left[i], pairs.right[i]);
     ++(behind < 0.0 ? wins.won : behind > 0.0 ? wins.lost : wins.tied);
@@ -172,8 +174,9 @@ std::string pairs_text(const CellComparison& row) {
   const auto add = [&](std::size_t n, const char* words) {
     if (n > 0) text.append(", ").append(std::to_string(n)).append(words);
   };
-  add(row.without, " lost by failure");
-  add(row.baseline_without, " won by failure");
+  const bool is_directed = row.score->better != Better::neither;
+  add(row.without, is_directed ? " lost by failure" : " failed");
+  add(row.baseline_without, is_directed ? " won by failure" : " failed in the baseline");
   add(row.neither, " failed in both");
   add(row.unpaired, " unpaired");
   return text;
@@ -254,7 +257,9 @@ std::string CellComparison::verdict(double level) const {
   const double one = side * disadvantage(*score, interval.lower, 0.0);
   const double other = side * disadvantage(*score, interval.upper, 0.0);
   if (!has_heavy_tail && one > 0.0 && other > 0.0) return "mixed";
-  return !has_heavy_tail && one < 0.0 && other < 0.0 ? word : word + " in most runs";
+  if (!has_heavy_tail && one < 0.0 && other < 0.0) return word;
+  const std::size_t others = ahead > 0 ? wins.lost + wins.tied : wins.won + wins.tied;
+  return word + (others == 0 ? " in all runs" : " in most runs");
 }
 
 double disadvantage(const Score& score, double left, double right) {

@@ -47,7 +47,7 @@ struct CellComparison {
 
   /// "better", "worse" or "undecided"; "lower" or "higher" if neither direction is better. If only
   /// the tests over runs show it, and not the interval of the mean difference: "better in most
-  /// runs", or "mixed" if that interval lies on the other side.
+  /// runs" or "in all runs", or "mixed" if that interval lies on the other side.
   std::string verdict(double level) const;
 };
 

@@ -10,10 +10,13 @@
 namespace montecarta::analysis {
 namespace {
 
+/// A number that is rounded to zero has no sign.
 std::string printed(const char* format, int precision, double value) {
-  std::array<char, 512> text{};
-  std::snprintf(text.data(), text.size(), format, precision, value);
-  return text.data();
+  std::array<char, 512> buffer{};
+  std::snprintf(buffer.data(), buffer.size(), format, precision, value);
+  std::string text = buffer.data();
+  if (text.find_first_not_of("-0.") == std::string::npos) std::erase(text, '-');
+  return text;
 }
 
 /// Place of the first significant digit: 0 for 3.58, -2 for 0.012.

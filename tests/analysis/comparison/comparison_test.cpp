@@ -141,6 +141,29 @@ TEST(CompareCells, KnowsWhichSideIsBetter) {
   EXPECT_EQ(found.rows.at(1).wins.lost, 20u);
 }
 
+TEST(CompareCells, CountsNoFailureWhereNeitherSideIsBetter) {
+  const auto cell = [](const std::string& label, const std::vector<double>& nees) {
+    CellAnalysis made = compared_cell(label, nees);
+    made.scores = {};
+    for (const double value : nees) {
+      const ScoreTable::Value scores[] = {{"nees", value}};
+      if (value >= 0.0) made.scores.add(scores);
+    }
+    return made;
+  };
+  std::vector<double> fragile(12, -1.0);
+  fragile[0] = 1.0;
+  const Comparisons found = compare_cells(
+      compared_study({cell("base", std::vector<double>(12, 2.0)), cell("fragile", fragile)}),
+      "base", scores({"nees"}));
+  const CellComparison& row = found.rows.at(0);
+  EXPECT_EQ(row.without, 11u);
+  EXPECT_EQ(row.wins.won, 1u);
+  EXPECT_EQ(row.wins.lost, 0u);
+  EXPECT_EQ(row.verdict(0.95), "undecided");
+  EXPECT_EQ(difference_table(found).rows.at(0).back(), "1, 11 failed");
+}
+
 TEST(CompareCells, ShowsTheNeesAsItsRatioToTheExpectedOne) {
   using Scores = std::vector<ScoreTable::Value>;
   const auto cell = [](const std::string& label, double nees) {
@@ -192,6 +215,21 @@ TEST(CompareCells, SaysWhereTheMeanIsOnTheOtherSideOfMostRuns) {
   EXPECT_LT(found.rows.at(0).wins.p_holm, 0.05);
   EXPECT_NE(found.rows.at(0).verdict(0.95), "better");
   EXPECT_EQ(found.rows.at(1).verdict(0.95), "better in most runs");
+}
+
+TEST(CompareCells, SaysThatAllRunsAreBetterWhereFewDecideTheMean) {
+  RngStream stream({.seed = 1, .purpose = Draw::test});
+  std::vector<double> base(50, 0.0), good(50, 1.0);
+  for (std::size_t i = 0; i < base.size(); ++i) base[i] = 1.0 + std::exp(4.0 * stream.normal());
+  const auto row_of = [&] {
+    const StudyAnalysis study =
+        compared_study({compared_cell("base", base), compared_cell("good", good)});
+    return compare_cells(study, "base", scores({"position_rmse"})).rows.at(0);
+  };
+  EXPECT_TRUE(row_of().has_heavy_tail);
+  EXPECT_EQ(row_of().verdict(0.95), "better in all runs");
+  good[7] = base[7];
+  EXPECT_EQ(row_of().verdict(0.95), "better in most runs");
 }
 
 // One sentence for each cell, which names each score once.
