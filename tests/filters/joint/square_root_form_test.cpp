@@ -53,7 +53,7 @@ struct Comparison {
         Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(C, Eigen::EigenvaluesOnly).eigenvalues()(0));
     if (F.cols() < F.rows()) return;
     least_square = std::min(
-        least_square, std::pow(Eigen::BDCSVD<Eigen::MatrixXd>(F).singularValues().tail<1>()(0), 2));
+        least_square, std::pow(Eigen::JacobiSVD<Eigen::MatrixXd>(F).singularValues().tail<1>()(0), 2));
   }
 };
 
