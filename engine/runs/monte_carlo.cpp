@@ -97,13 +97,11 @@ void run_worker(Session& session) {
 }
 
 /// Runs until no run is missing or a stop is requested.
-void run_missing(const StudyPlan& plan, const RunOptions& options, const RunCounts& before,
-                 ResultWriter& writer, StopRequest& stop, const Watch::Orders& orders) {
+void run_missing(const StudyPlan& plan, const RunOptions& options, ResultWriter& writer,
+                 StopRequest& stop, Progress& progress) {
   const std::vector<RecordLayout> layouts = layouts_of(plan, Detail::usual);
   const std::vector<RecordLayout> full_layouts = layouts_of(plan, Detail::full);
-  const std::size_t n_workers = workers_for(plan, options.parallel, before.missing);
-  Progress progress(options.quiet ? ProgressStyle::none : options.progress, before);
-  const Watch watch(orders, stop, progress);
+  const std::size_t n_workers = workers_for(plan, options.parallel, progress.counts().missing);
   for (const std::uint64_t runs : rounds_of(plan)) {
     TaskList tasks(plan, runs, writer);
     SpareThreads spare(options.parallel, n_workers);
@@ -111,7 +109,8 @@ void run_missing(const StudyPlan& plan, const RunOptions& options, const RunCoun
     options.parallel.for_each(n_workers, [&](std::size_t) { run_worker(session); });
     if (stop.is_set()) return;
     if (runs == plan.runs_here()) return;
-    progress.runs_spared(spare_what_is_enough(plan, runs, options.parallel, writer));
+    progress.runs_ended(RunStatus::spared,
+                        spare_what_is_enough(plan, runs, options.parallel, writer));
   }
 }
 
@@ -156,7 +155,9 @@ RunOutcome run_study(const StudyPlan& plan, const RunOptions& options) {
   if (before.missing > 0) {
     std::optional<double> left = options.time_budget;
     if (left) *left -= stopwatch.seconds();
-    run_missing(plan, options, before, writer, stop, {interruption, left});
+    Progress progress(options.quiet ? ProgressStyle::none : options.progress, before);
+    const Watch watch(interruption, left, stop, progress);
+    run_missing(plan, options, writer, stop, progress);
   }
   RunOutcome outcome{.counts = stored_counts(plan, writer)};
   if (outcome.counts.missing > 0) outcome.stopped = stop.reason();

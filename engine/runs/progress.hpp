@@ -2,10 +2,9 @@
 #pragma once
 
 #include "engine/namespaces.hpp"
-#include "engine/records/result_file.hpp"
+#include "engine/records/run_record.hpp"
 #include "engine/runs/interruption.hpp"
 
-#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
@@ -34,20 +33,20 @@ struct RunCounts {
   std::uint64_t ended() const { return complete + failed; }
   /// Number of runs that are needed.
   std::uint64_t total() const { return ended() + missing; }
-  void add(RunStatus status);
+  /// Counts some runs of this status.
+  void add(RunStatus status, std::uint64_t runs = 1);
   RunCounts& operator+=(const RunCounts& other);
 };
 
 /// Seconds in words of at most 8 characters: "12 s", "3:05 min", "12:40 h", "3.4 d".
 std::string duration_in_words(double seconds);
 
-/// "1350/3000 runs, 2 failed, 85.2/s, 19 s left" after `seconds` of this session, before which
-/// `earlier` runs had ended.
-std::string progress_words(const RunCounts& counts, std::uint64_t earlier, double seconds);
-/// A bar, the percentage and the words, with at most `width` characters. If they do not fit, the
-/// bar is left out first.
-std::string progress_bar(const RunCounts& counts, std::uint64_t earlier, double seconds,
-                         std::size_t width);
+/// " 45 %  1350/3000 runs, 2 failed, 85.2/s, 19 s left" after `seconds` of this session, before
+/// which `earlier` runs had ended.
+std::string progress_line(const RunCounts& counts, std::uint64_t earlier, double seconds);
+/// `line` behind a bar that is filled in proportion to the runs that ended, with at most `width`
+/// characters. If there is no room for the bar, it is left out.
+std::string with_bar(const std::string& line, const RunCounts& counts, std::size_t width);
 
 enum class ProgressStyle { automatic, plain, none };
 
@@ -55,17 +54,15 @@ enum class ProgressStyle { automatic, plain, none };
 double plain_interval(double seconds);
 
 /// Shows the progress of a study: on a terminal as one line that is redrawn at most ten times a
-/// second, elsewhere as a plain line every plain_interval(). Workers only increment counters;
-/// another thread shows them.
+/// second, elsewhere as a plain line every plain_interval(). Workers only count; another thread
+/// shows the counts.
 class Progress {
  public:
   /// `out` is standard error except in tests.
   Progress(ProgressStyle style, const RunCounts& at_start, std::FILE* out = stderr);
 
-  /// Counts a run that a worker has stored. Thread-safe without a lock.
-  void run_ended(RunStatus status);
-  /// Counts `runs` runs that will not be made.
-  void runs_spared(std::uint64_t runs);
+  /// Counts missing runs that now have this status. Thread-safe.
+  void runs_ended(RunStatus status, std::uint64_t runs = 1);
   RunCounts counts() const;
   /// Draws if enough time has passed.
   void show();
@@ -74,20 +71,15 @@ class Progress {
   void finish();
 
  private:
-  enum class Form { bar, plain, none };
-  static Form form_of(ProgressStyle style, std::FILE* out);
+  void draw(double seconds);
 
-  void show_bar(double seconds);
-  void show_plain(double seconds);
-
-  Form form_;
-  RunCounts at_start_;
-  std::FILE* out_;
+  std::FILE* out_;  ///< nullptr: nothing is shown
+  bool redraws_;    ///< one line on a terminal
+  std::uint64_t earlier_;
   Stopwatch stopwatch_;
   double last_shown_ = 0.0;  ///< [s] on the stopwatch
-  std::atomic<std::uint64_t> complete_{0};
-  std::atomic<std::uint64_t> failed_{0};
-  std::atomic<std::uint64_t> spared_{0};
+  mutable std::mutex mutex_;
+  RunCounts counts_;
 };
 
 /// A thread that checks twenty times a second for signals and for the end of the time budget,
@@ -95,14 +87,9 @@ class Progress {
 /// clock nor terminal.
 class Watch {
  public:
-  /// Conditions that end a study early.
-  struct Orders {
-    const Interruption& interruption;
-    std::optional<double> time_budget;  ///< [s] from the construction of the watch
-  };
-
-  /// All arguments must outlive the watch.
-  Watch(const Orders& orders, StopRequest& stop, Progress& progress);
+  /// `time_budget` [s] counts from now. The other arguments must outlive the watch.
+  Watch(const Interruption& interruption, std::optional<double> time_budget, StopRequest& stop,
+        Progress& progress);
   ~Watch();
   Watch(const Watch&) = delete;
   Watch& operator=(const Watch&) = delete;
@@ -110,12 +97,12 @@ class Watch {
  private:
   void keep_watch();
   void look();
-  void acknowledge_signal() const;
 
   const Interruption& interruption_;
-  std::optional<std::chrono::steady_clock::time_point> deadline_;
+  std::optional<double> time_budget_;
   StopRequest& stop_;
   Progress& progress_;
+  Stopwatch stopwatch_;
   std::mutex mutex_;
   std::condition_variable wake_;
   bool over_ = false;

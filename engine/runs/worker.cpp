@@ -140,7 +140,7 @@ void Worker::run_into(RunRecord& record, Recorder& recorder, const Task& task,
   SlamFilter& filter = *cell_state(task.cell).filter;
   if (run_one(conditions, filter, recorder, record) == RunEnd::dropped) return;
   session_.writer.write(task.cell, task.run_index, record);
-  session_.progress.run_ended(record.status());
+  session_.progress.runs_ended(record.status());
 }
 
 void Worker::fetch_drive(std::size_t run_index) {

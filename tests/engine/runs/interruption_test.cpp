@@ -76,7 +76,7 @@ class WatchTest : public testing::Test {
 };
 
 TEST_F(WatchTest, AsksToStopWhenASignalComes) {
-  const Watch watch({interruption, std::nullopt}, stop, progress);
+  const Watch watch(interruption, std::nullopt, stop, progress);
   EXPECT_FALSE(stop.is_set());
   raise(SIGTERM);
   EXPECT_EQ(wait_for(stop), StopReason::sigterm);
@@ -84,13 +84,13 @@ TEST_F(WatchTest, AsksToStopWhenASignalComes) {
 
 TEST_F(WatchTest, AsksToStopWhenTheBudgetIsUsedUp) {
   const auto begin = Clock::now();
-  const Watch watch({interruption, 0.1}, stop, progress);
+  const Watch watch(interruption, 0.1, stop, progress);
   EXPECT_EQ(wait_for(stop), StopReason::time_budget);
   EXPECT_GE(Clock::now() - begin, std::chrono::milliseconds(100));
 }
 
 TEST_F(WatchTest, TakesABudgetLongerThanTheClockCanCount) {
-  const Watch watch({interruption, 1e300}, stop, progress);
+  const Watch watch(interruption, 1e300, stop, progress);
   std::this_thread::sleep_for(std::chrono::milliseconds(60));
   EXPECT_FALSE(stop.is_set());
 }

@@ -31,7 +31,7 @@ std::string shown_of(ProgressStyle style, std::uint64_t total) {
   const File file(std::tmpfile(), std::fclose);
   Progress progress(style, {.missing = total}, file.get());
   for (std::uint64_t run = 0; run < total; ++run) {
-    progress.run_ended(run == 0 ? RunStatus::failed : RunStatus::complete);
+    progress.runs_ended(run == 0 ? RunStatus::failed : RunStatus::complete);
     progress.show();
   }
   progress.finish();
@@ -48,8 +48,8 @@ TEST(Progress, WritesAtMostOnePlainLineAMinuteOrNone) {
 TEST(Progress, CountsFromManyThreads) {
   Progress progress(ProgressStyle::none, {.complete = 5, .failed = 1, .missing = 4000});
   const auto end_runs = [&] {
-    for (int i = 0; i < 1000; ++i) progress.run_ended(RunStatus::complete);
-    for (int i = 0; i < 1000; ++i) progress.run_ended(RunStatus::failed);
+    for (int i = 0; i < 1000; ++i) progress.runs_ended(RunStatus::complete);
+    for (int i = 0; i < 1000; ++i) progress.runs_ended(RunStatus::failed);
   };
   std::thread other(end_runs);
   end_runs();
@@ -99,7 +99,7 @@ TEST(Progress, RedrawsOneLineOnATerminalWithinItsWidth) {
   const auto began = std::chrono::steady_clock::now();
   Progress progress(ProgressStyle::automatic, {.missing = 20}, terminal.inside.get());
   for (int i = 0; i < 20; ++i) {
-    progress.run_ended(RunStatus::complete);
+    progress.runs_ended(RunStatus::complete);
     progress.show();  // not drawn within a tenth of a second of the last time
   }
   progress.finish();
@@ -126,23 +126,25 @@ TEST(ProgressLine, PutsDurationsInWords) {
 }
 
 TEST(ProgressLine, TellsCountsRateAndTime) {
-  EXPECT_EQ(progress_words({.complete = 148, .failed = 2, .missing = 150}, 50, 10.0),
-            "150/300 runs, 2 failed, 10/s, 15 s left");
-  EXPECT_EQ(progress_words({.complete = 50, .missing = 250}, 50, 10.0), "50/300 runs");
-  EXPECT_EQ(progress_words({.complete = 300}, 0, 10.0), "300/300 runs, 30/s in 10 s");
-  EXPECT_EQ(progress_words({.complete = 1, .missing = 1}, 0, 600.0),
-            "1/2 runs, 6/h, 10:00 min left");
+  EXPECT_EQ(progress_line({.complete = 148, .failed = 2, .missing = 150}, 50, 10.0),
+            " 50 %  150/300 runs, 2 failed, 10/s, 15 s left");
+  EXPECT_EQ(progress_line({.complete = 50, .missing = 250}, 50, 10.0), " 16 %  50/300 runs");
+  EXPECT_EQ(progress_line({.complete = 300}, 0, 10.0), "100 %  300/300 runs, 30/s in 10 s");
+  EXPECT_EQ(progress_line({.complete = 1, .missing = 1}, 0, 600.0),
+            " 50 %  1/2 runs, 6/h, 10:00 min left");
 }
 
-TEST(ProgressLine, DrawsABarWhereItFitsAndNeverExceedsTheWidth) {
+TEST(ProgressLine, HasABarWhereItFitsAndNeverExceedsTheWidth) {
+  const auto line_of = [](const RunCounts& counts, double seconds, std::size_t width) {
+    return with_bar(progress_line(counts, 0, seconds), counts, width);
+  };
   const RunCounts half{.complete = 150, .missing = 150};
-  EXPECT_EQ(progress_bar(half, 0, 10.0, 200),
+  EXPECT_EQ(line_of(half, 10.0, 200),
             "[####################....................]  50 %  150/300 runs, 15/s, 10 s left");
-  EXPECT_EQ(progress_bar(half, 0, 10.0, 40), " 50 %  150/300 runs, 15/s, 10 s left");
+  EXPECT_EQ(line_of(half, 10.0, 40), " 50 %  150/300 runs, 15/s, 10 s left");
   for (std::size_t width = 0; width < 120; ++width)
-    EXPECT_LE(progress_bar({.complete = 123, .failed = 7, .missing = 870}, 0, 3.0, width).size(),
-              width);
-  EXPECT_EQ(progress_bar({.complete = 9999, .missing = 1}, 0, 1.0, 12), " 99 %  9999/");
+    EXPECT_LE(line_of({.complete = 123, .failed = 7, .missing = 870}, 3.0, width).size(), width);
+  EXPECT_EQ(line_of({.complete = 9999, .missing = 1}, 1.0, 12), " 99 %  9999/");
 }
 
 }  // namespace
