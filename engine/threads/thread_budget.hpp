@@ -4,7 +4,7 @@
 #include "engine/namespaces.hpp"
 
 #include <filesystem>
-#include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -13,31 +13,21 @@ namespace montecarta::engine {
 /// The limits that the operating system sets for this process.
 struct CpuLimits {
   int affinity = 1;  ///< processors the process may run on
-  std::optional<double>
-      quota;  ///< processors, by the tightest control group; nullopt if none limits it
+  /// Processors, by the tightest control group; infinity if none limits it.
+  double quota = std::numeric_limits<double>::infinity();
 };
 
 CpuLimits cpu_limits();
 
 /// The tightest CPU quota, in processors, of the control group of this process and its parents,
 /// version 1 or 2. `root` is "/" except in tests. Groups that cannot be read do not limit.
-std::optional<double> cgroup_quota(const std::filesystem::path& root);
+double cgroup_quota(const std::filesystem::path& root);
 
-/// The number of threads that a program may use, and the origin of that number.
-struct ThreadBudget {
-  int threads = 1;
-  std::string source;  ///< for instance "--threads", "SLURM_CPUS_PER_TASK", "CPU affinity"
-};
-
-/// Value of an environment variable; nullopt if it is not set.
-using Environment = std::function<std::optional<std::string>(const char* name)>;
-std::optional<std::string> environment_variable(const char* name);
-
-/// The first one that is set of `threads_option` (the text after --threads), MONTECARTA_THREADS,
-/// SLURM_CPUS_PER_TASK and OMP_NUM_THREADS, else the tightest CPU limit. Throws StudyError if it is
-/// not a whole number from 1 to 4096. An empty variable counts as not set.
-ThreadBudget thread_budget(const std::optional<std::string>& threads_option,
-                           const Environment& environment = environment_variable,
-                           const CpuLimits& limits = cpu_limits());
+/// The number of threads that a program may use: the first one that is set of `threads_option` (the
+/// text after --threads), MONTECARTA_THREADS, SLURM_CPUS_PER_TASK and OMP_NUM_THREADS, else the
+/// tightest CPU limit. Throws StudyError if it is not a whole number from 1 to 4096. An empty
+/// variable counts as not set.
+int thread_budget(const std::optional<std::string>& threads_option,
+                  const CpuLimits& limits = cpu_limits());
 
 }  // namespace montecarta::engine

@@ -315,7 +315,7 @@ StudyPlan plan_of(const Study& study, const Arguments& arguments) {
 
 Parallel parallel_of(const Arguments& arguments) {
   const std::string backend = backend_of(arguments);
-  const int threads = thread_budget(arguments.text("threads")).threads;
+  const int threads = thread_budget(arguments.text("threads"));
   if (backend == "serial") return Parallel::serial();
   return Parallel(backend == "openmp" ? Backend::openmp : Backend::tbb, threads);
 }

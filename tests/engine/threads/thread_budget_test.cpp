@@ -6,48 +6,55 @@
 #include "tests/doubles/matchers.hpp"
 #include "tests/doubles/scratch_folder.hpp"
 
+#include <cstdlib>
 #include <fstream>
+#include <limits>
 #include <map>
 #include <string>
 
 namespace montecarta::engine {
 namespace {
 
-/// The budget of a process on 6 processors with these variables set.
-ThreadBudget budget(std::map<std::string, std::string> variables,
-                    std::optional<std::string> option = std::nullopt,
-                    std::optional<double> quota = std::nullopt) {
-  const Environment environment = [&](const char* name) -> std::optional<std::string> {
-    const auto found = variables.find(name);
-    if (found == variables.end()) return std::nullopt;
-    return found->second;
-  };
-  return thread_budget(option, environment, CpuLimits{6, quota});
-}
+constexpr double kNoQuota = std::numeric_limits<double>::infinity();
 
-void expect_budget(const ThreadBudget& actual, int threads, const std::string& source) {
-  EXPECT_EQ(actual.threads, threads);
-  EXPECT_EQ(actual.source, source);
-}
+/// Leaves no variable set for other tests.
+class ThreadBudget : public testing::Test {
+ protected:
+  ~ThreadBudget() override { unset(); }
 
-TEST(ThreadBudget, TakesTheFirstThatIsSetWithinTheQuota) {
+  /// The budget of a process on 6 processors with these variables set.
+  static int budget(const std::map<std::string, std::string>& variables,
+                    const std::optional<std::string>& option = std::nullopt,
+                    double quota = kNoQuota) {
+    unset();
+    for (const auto& [name, value] : variables) ::setenv(name.c_str(), value.c_str(), 1);
+    return thread_budget(option, CpuLimits{6, quota});
+  }
+
+ private:
+  static void unset() {
+    for (const char* name : {"MONTECARTA_THREADS", "SLURM_CPUS_PER_TASK", "OMP_NUM_THREADS"})
+      ::unsetenv(name);
+  }
+};
+
+TEST_F(ThreadBudget, TakesTheFirstThatIsSetWithinTheQuota) {
   std::map<std::string, std::string> variables{
       {"MONTECARTA_THREADS", "3"}, {"SLURM_CPUS_PER_TASK", "4"}, {"OMP_NUM_THREADS", "5,2"}};
-  expect_budget(budget(variables, "2"), 2, "--threads");
-  expect_budget(budget(variables), 3, "MONTECARTA_THREADS");
+  EXPECT_EQ(budget(variables, "2"), 2);
+  EXPECT_EQ(budget(variables), 3);
   variables.erase("MONTECARTA_THREADS");
-  expect_budget(budget(variables), 4, "SLURM_CPUS_PER_TASK");
+  EXPECT_EQ(budget(variables), 4);
   variables.erase("SLURM_CPUS_PER_TASK");
-  expect_budget(budget(variables), 5, "OMP_NUM_THREADS");
-  expect_budget(budget({}), 6, "CPU affinity");
-  expect_budget(budget({{"MONTECARTA_THREADS", ""}, {"OMP_NUM_THREADS", "2"}}), 2,
-                "OMP_NUM_THREADS");
-  expect_budget(budget({}, std::nullopt, 1.5), 2, "cgroup CPU quota");
-  expect_budget(budget({}, std::nullopt, 0.1), 1, "cgroup CPU quota");
-  expect_budget(budget({}, std::nullopt, 16.0), 6, "CPU affinity");
+  EXPECT_EQ(budget(variables), 5);
+  EXPECT_EQ(budget({}), 6);
+  EXPECT_EQ(budget({{"MONTECARTA_THREADS", ""}, {"OMP_NUM_THREADS", "2"}}), 2);
+  EXPECT_EQ(budget({}, std::nullopt, 1.5), 2);
+  EXPECT_EQ(budget({}, std::nullopt, 0.1), 1);
+  EXPECT_EQ(budget({}, std::nullopt, 16.0), 6);
 }
 
-TEST(ThreadBudget, NamesTheVariableAndTheRemedy) {
+TEST_F(ThreadBudget, NamesTheVariableAndTheRemedy) {
   for (const char* bad : {"0", "-2", "two", "2x", "1e9", "99999999999999999999", " 2"})
     EXPECT_THAT(
         [&] {
@@ -59,13 +66,13 @@ TEST(ThreadBudget, NamesTheVariableAndTheRemedy) {
               ThrowsMessage<StudyError>(AllOf(HasSubstr("--threads"), HasSubstr("'0'"))));
 }
 
-TEST(ThreadBudget, DoesNotReadWhatDoesNotCount) {
-  expect_budget(budget({{"OMP_NUM_THREADS", "many"}}, "2"), 2, "--threads");
+TEST_F(ThreadBudget, DoesNotReadWhatDoesNotCount) {
+  EXPECT_EQ(budget({{"OMP_NUM_THREADS", "many"}}, "2"), 2);
 }
 
-TEST(ThreadBudget, OfThisProcessIsPositive) {
+TEST_F(ThreadBudget, OfThisProcessIsPositive) {
   EXPECT_GE(cpu_limits().affinity, 1);
-  EXPECT_GE(thread_budget(std::nullopt).threads, 1);
+  EXPECT_GE(thread_budget(std::nullopt), 1);
 }
 
 /// A file system root of our own making.
@@ -81,10 +88,10 @@ class CgroupQuota : public testing::Test {
 };
 
 TEST_F(CgroupQuota, IsTheTightestOfAllParentsInVersion2) {
-  EXPECT_EQ(cgroup_quota(root), std::nullopt) << "without groups";
+  EXPECT_EQ(cgroup_quota(root), kNoQuota) << "without groups";
   write("proc/self/cgroup", "0::/batch/job_7");
   write("sys/fs/cgroup/cpu.max", "max 100000");
-  EXPECT_EQ(cgroup_quota(root), std::nullopt);
+  EXPECT_EQ(cgroup_quota(root), kNoQuota);
   write("sys/fs/cgroup/batch/cpu.max", "150000 100000");
   write("sys/fs/cgroup/batch/job_7/cpu.max", "400000 100000");
   EXPECT_EQ(cgroup_quota(root), 1.5);
