@@ -461,8 +461,6 @@ void make_scale(const Handle& dataset, const std::string& dimension) {
   check(H5DSset_scale(dataset.id(), dimension.c_str()), "make a dimension scale of", dataset, "");
 }
 
-bool is_scale(const Handle& dataset) { return H5DSis_scale(dataset.id()) > 0; }
-
 void attach_scale(const Handle& dataset, const Handle& scale, unsigned axis) {
   check(H5DSattach_scale(dataset.id(), scale.id(), axis), "attach a dimension scale to", dataset,
         "");

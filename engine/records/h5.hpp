@@ -97,7 +97,6 @@ std::string read_text(const Handle& dataset);
 
 /// Makes a dataset the scale of a dimension.
 void make_scale(const Handle& dataset, const std::string& dimension);
-bool is_scale(const Handle& dataset);
 void attach_scale(const Handle& dataset, const Handle& scale, unsigned axis);
 
 }  // namespace montecarta::engine::h5

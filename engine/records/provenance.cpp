@@ -39,11 +39,6 @@ std::string libm() {
 #endif
 }
 
-std::string machine() {
-  utsname system{};
-  return ::uname(&system) == 0 ? system.machine : "unknown";
-}
-
 std::string date() {
   const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
   std::tm utc{};
@@ -65,8 +60,6 @@ std::string cpu() {
 }  // namespace
 
 std::string program_version() { return MONTECARTA_VERSION; }
-
-std::string toolchain() { return MONTECARTA_COMPILER ", " + libm() + ", " + machine(); }
 
 TextPairs collect_provenance() {
   utsname system{};

@@ -10,10 +10,6 @@ namespace montecarta::engine {
 /// Version of this program, e.g. "0.1.0".
 std::string program_version();
 
-/// The environment on which the bits of a result depend, besides the study and the sources, e.g.
-/// "GNU 12.2.0, glibc 2.36, x86_64".
-std::string toolchain();
-
 /// Facts about the build and the machine: version, git, compiler, flags, libm, instruction_set,
 /// hdf5; date (UTC), host, system, cpu. Facts that cannot be determined are "unknown". The caller
 /// adds the command line.

@@ -145,11 +145,6 @@ void RunRecord::mark_failed(std::uint32_t step, std::string_view reason, double 
   cpu_seconds_ = cpu_seconds;
 }
 
-std::string_view RunRecord::failure_reason() const {
-  const auto end = std::find(outcome_.reason.begin(), outcome_.reason.end(), '\0');
-  return {outcome_.reason.data(), static_cast<std::size_t>(end - outcome_.reason.begin())};
-}
-
 std::span<const std::byte> RunRecord::bytes(std::size_t c) const {
   return {memory_.data() + layout_->offset(c), layout_->columns()[c].bytes()};
 }

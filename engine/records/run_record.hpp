@@ -109,7 +109,6 @@ class RunRecord {
   const RecordLayout& layout() const { return *layout_; }
   RunStatus status() const { return status_; }
   std::uint32_t failure_step() const { return outcome_.step; }
-  std::string_view failure_reason() const;
   /// The reason as stored in the file, padded with zeros.
   std::span<const char> failure_text() const { return outcome_.reason; }
   double cpu_seconds() const { return cpu_seconds_; }

@@ -16,6 +16,7 @@
 #include <span>
 #include <sstream>
 #include <string>
+#include <sys/utsname.h>
 #include <vector>
 
 namespace montecarta::experiments {
@@ -99,6 +100,17 @@ void write_stored(const fs::path& path, const std::string& toolchain,
   std::ofstream file(path);
   file << toolchain << "\n";
   for (const auto& [cell, fingerprint] : fingerprints) file << cell << "," << fingerprint << "\n";
+}
+
+/// The environment on which the bits of a result depend, besides the study and the sources, e.g.
+/// "GNU 12.2.0, glibc 2.36, x86_64".
+std::string toolchain() {
+  std::string facts;
+  for (const auto& [name, value] : collect_provenance()) {
+    if (name == "compiler" || name == "libm") facts += value + ", ";
+  }
+  utsname system{};
+  return facts + (::uname(&system) == 0 ? system.machine : "unknown");
 }
 
 using SameBits = Program;
