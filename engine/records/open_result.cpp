@@ -3,6 +3,7 @@
 
 #include "engine/errors.hpp"
 #include "engine/records/merge.hpp"
+#include "engine/records/result_writer.hpp"
 #include "engine/records/seal.hpp"
 
 #include <algorithm>
@@ -36,10 +37,10 @@ void expect_room(const fs::path& path, double bytes) {
                  " are free: free space, choose another disk, or store fewer runs or columns");
 }
 
-}  // namespace
-
+/// Lays out an empty result at the temporary name `path` and returns it locked. `fill` writes the
+/// part that the seal covers. Leaves no file if that fails.
 PosixFile lay_out_new(const fs::path& path, const ResultDescription& description,
-                      const Fill& fill) {
+                      const Fill& fill = nullptr) {
   PosixFile file(path, PosixFile::Mode::create);
   file.lock();
   try {
@@ -57,6 +58,8 @@ PosixFile lay_out_new(const fs::path& path, const ResultDescription& description
   }
   return file;
 }
+
+}  // namespace
 
 std::uint64_t write_at_once(const fs::path& path, const ResultDescription& description,
                             const Fill& fill, Existing existing) {
@@ -87,8 +90,8 @@ OpenResult new_work(const fs::path& work, const ResultDescription& description, 
 
 }  // namespace
 
-OpenResult create_result(const fs::path& path, const StudyPlan& plan, const TextPairs& provenance,
-                         Existing existing) {
+ResultWriter ResultWriter::create(const fs::path& path, const StudyPlan& plan,
+                                  const TextPairs& provenance, Existing existing) {
   std::error_code ignored;
   if (fs::is_directory(path, ignored))
     throw StudyError(path.string() + ": is a folder: name a file in it");
@@ -100,12 +103,10 @@ OpenResult create_result(const fs::path& path, const StudyPlan& plan, const Text
   OpenResult result =
       new_work(part_of(path), description, replaced ? Existing::replace : Existing::refuse);
   result.existing = existing;
-  return result;
+  return {path, std::move(result), plan};
 }
 
 namespace {
-
-namespace fs = std::filesystem;
 
 ResultDescription read_description_of(const fs::path& path) {
   try {
@@ -253,16 +254,17 @@ OpenResult continued_work(const fs::path& work, const fs::path& path,
 
 }  // namespace
 
-OpenResult resume_result(const fs::path& path, const StudyPlan& plan, const TextPairs& provenance) {
+ResultWriter ResultWriter::resume(const fs::path& path, const StudyPlan& plan,
+                                  const TextPairs& provenance) {
   const bool begun = is_there(part_of(path));
-  if (!begun && !is_there(path)) return create_result(path, plan, provenance, Existing::refuse);
+  if (!begun && !is_there(path)) return create(path, plan, provenance, Existing::refuse);
   const ResultDescription planned = describe(plan, provenance);
-  return begun ? continued_work(part_of(path), path, planned) : finished_result(path, planned);
+  return {path,
+          begun ? continued_work(part_of(path), path, planned) : finished_result(path, planned),
+          plan};
 }
 
 namespace {
-
-namespace fs = std::filesystem;
 
 // A cluster may run two copies of one task: a node that lost its connection continues while the
 // scheduler starts the task elsewhere, and locks do not work on network file systems. Therefore no
@@ -357,10 +359,10 @@ void copy_complete_runs(const fs::path& other, const ResultDescription& planned,
 
 }  // namespace
 
-OpenResult attempt_result(const fs::path& path, const StudyPlan& plan,
-                          const TextPairs& provenance) {
+ResultWriter ResultWriter::attempt(const fs::path& path, const StudyPlan& plan,
+                                   const TextPairs& provenance) {
   const ResultDescription planned = describe(plan, provenance);
-  if (is_there(path)) return finished_result(path, planned);
+  if (is_there(path)) return {path, finished_result(path, planned), plan};
   const fs::path own = own_name(path);
   OpenResult result = take_checkpoint(path, own, planned)
                           ? continued_work(own, path, planned)
@@ -369,7 +371,7 @@ OpenResult attempt_result(const fs::path& path, const StudyPlan& plan,
   for (const fs::path& other : attempts_at(path)) {
     if (other != own && other.extension() != ".new") copy_complete_runs(other, planned, result);
   }
-  return result;
+  return {path, std::move(result), plan};
 }
 
 void rename_finished(OpenResult& attempt, const fs::path& path) {

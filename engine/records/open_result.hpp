@@ -30,11 +30,6 @@ struct OpenResult {
 /// Writes numbers to a file that is laid out.
 using Fill = std::function<void(const PosixFile&, const ResultSlabs&)>;
 
-/// Lays out an empty result at the temporary name `path` and returns it locked. `fill` writes the
-/// part that the seal covers. Leaves no file if that fails.
-PosixFile lay_out_new(const std::filesystem::path& path, const ResultDescription& description,
-                      const Fill& fill = nullptr);
-
 /// Writes a result of which all numbers are known to a temporary name, then gives it its name.
 /// Returns its size [byte]. Leaves no file under the temporary name if that fails.
 std::uint64_t write_at_once(const std::filesystem::path& path, const ResultDescription& description,
@@ -48,15 +43,6 @@ std::optional<std::string> difference(const ResultDescription& a, const ResultDe
 /// Differences between two builds, worded for the user; empty if both round alike.
 std::vector<std::string> build_differences(const TextPairs& a, const TextPairs& b);
 
-/// See ResultWriter::create.
-OpenResult create_result(const std::filesystem::path& path, const StudyPlan& plan,
-                         const TextPairs& provenance, Existing existing);
-/// See ResultWriter::resume.
-OpenResult resume_result(const std::filesystem::path& path, const StudyPlan& plan,
-                         const TextPairs& provenance);
-/// See ResultWriter::attempt.
-OpenResult attempt_result(const std::filesystem::path& path, const StudyPlan& plan,
-                          const TextPairs& provenance);
 /// Leaves an incomplete attempt to a later one, as OUT.h5.part unless that name is taken.
 void rename_finished(OpenResult& attempt, const std::filesystem::path& path);
 /// Renames a complete attempt to the final name, unless another one was first, and removes the

@@ -25,7 +25,8 @@ void lay_out_file(benchmark::State& state) {
   const StudyPlan plan = lap_plan(static_cast<std::uint64_t>(state.range(0)), 800);
   for (auto _ : state) {
     const ScratchFolder folder;
-    benchmark::DoNotOptimize(lay_out_new(folder / "out.h5", describe(plan, {})));
+    benchmark::DoNotOptimize(
+        write_at_once(folder / "out.h5", describe(plan, {}), nullptr, Existing::replace));
   }
 }
 
