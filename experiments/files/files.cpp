@@ -81,30 +81,27 @@ std::string text_file(const std::filesystem::path& path) {
                    ": a NUL byte (this is no text, or it is damaged): save it as UTF-8");
 }
 
-namespace {
-
-std::size_t columns_of(std::string_view row) {
-  return 1 + static_cast<std::size_t>(std::ranges::count(row, ','));
-}
-
-}  // namespace
-
 CsvRows::CsvRows(const std::filesystem::path& path, std::span<const std::string> headers)
     : path_(path.string()), text_(text_file(path)), rest_(text_) {
   read_header(headers);
 }
 
-std::vector<std::string> CsvRows::columns() const { return split(header_text_, ','); }
-
 std::string CsvRows::place() const { return path_ + ":" + std::to_string(line_); }
+
+void CsvRows::refuse(const std::string& fault) const { throw StudyError(place() + ": " + fault); }
+
+void CsvRows::expect_some() const {
+  if (has_rows_) return;
+  throw StudyError(path_ + ": no rows behind the header (it is empty): write at least one");
+}
 
 /// A number at the end of a truncated file may be incomplete and still be valid, so a last line
 /// without line break is refused.
 void CsvRows::refuse_open_end(std::string_view line) const {
   if (trimmed(line.substr(0, line.find('#'))).empty()) return;
-  throw StudyError(place() +
-                   ": the last row has no end (the file may have been cut short): end it "
-                   "with a line break if it is whole");
+  refuse(
+      "the last row has no end (the file may have been cut short): end it with a line break if it "
+      "is whole");
 }
 
 std::optional<std::string_view> CsvRows::take_row() {
@@ -129,12 +126,12 @@ void CsvRows::read_header(std::span<const std::string> headers) {
   }
   constexpr std::size_t kLongestHeader = 200;  // of those that are known
   const std::size_t length = headers.empty() ? row->size() : kLongestHeader;
-  header_text_ = joined(split(row->substr(0, length), ','), ",");
+  columns_ = split(row->substr(0, length), ',');
   if (headers.empty()) return;
-  const auto known = std::ranges::find(headers, header_text_);
+  const auto known = std::ranges::find(headers, joined(columns_, ","));
   if (known == headers.end()) {
-    throw StudyError(place() + ": '" + excerpt(*row) +
-                     "' is not the header (the first row names the columns): begin with " + remedy);
+    refuse("'" + excerpt(*row) +
+           "' is not the header (the first row names the columns): begin with " + remedy);
   }
   header_ = static_cast<std::size_t>(known - headers.begin());
 }
@@ -142,18 +139,28 @@ void CsvRows::read_header(std::span<const std::string> headers) {
 bool CsvRows::next() {
   const std::optional<std::string_view> row = take_row();
   if (!row) return false;
-  if (columns_of(*row) != columns_of(header_text_)) {
-    throw StudyError(place() + ": " + std::to_string(columns_of(*row)) + " fields (a row is " +
-                     header_text_ + "): write one field for each column");
-  }
   split_into(*row, ',', fields_);
-  return true;
+  if (fields_.size() != columns_.size()) {
+    refuse(std::to_string(fields_.size()) + " fields (a row is " + joined(columns_, ",") +
+           "): write one field for each column");
+  }
+  return has_rows_ = true;
 }
 
 double CsvRows::number(std::size_t i, const char* noun) const {
   if (const std::optional<double> value = to_number(field(i))) return *value;
-  throw StudyError(place() + ": '" + excerpt(field(i)) + "' is no " + noun +
-                   " (a finite number is needed): write e.g. 12.5");
+  refuse("'" + excerpt(field(i)) + "' is no " + noun +
+         " (a finite number is needed): write e.g. 12.5");
+}
+
+double CsvRows::time(Order order) {
+  const double before = last_time_;
+  last_time_ = number(0, "time");
+  if (last_time_ > before || (last_time_ == before && order == Order::not_earlier))
+    return last_time_;
+  refuse("time " + to_text(last_time_) + " s comes after " + to_text(before) +
+         " s (rows go forward in time): sort them" +
+         (order == Order::later ? ", one row for each time" : ""));
 }
 
 }  // namespace montecarta::experiments

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -46,7 +47,7 @@ class CsvRows {
   /// Index of the file's header in `headers`.
   std::size_t header() const { return header_; }
   /// Names of the columns, trimmed.
-  std::vector<std::string> columns() const;
+  const std::vector<std::string>& columns() const { return columns_; }
   /// Reads the next row; false after the last one. Throws StudyError if the number of fields
   /// differs from that of the header.
   bool next();
@@ -54,8 +55,17 @@ class CsvRows {
   std::string_view field(std::size_t i) const { return fields_[i]; }
   /// Field i as a finite number; `noun` names the quantity in errors.
   double number(std::size_t i, const char* noun) const;
+  /// Field 0 as a time [s], which must not be earlier than that of the row before. With `later` it
+  /// must be later.
+  enum class Order { later, not_earlier };
+  double time(Order order = Order::later);
   /// "FILE:LINE" of the current row.
   std::string place() const;
+  /// Throws StudyError with the place of the current row and `fault`, worded "problem (why):
+  /// remedy".
+  [[noreturn]] void refuse(const std::string& fault) const;
+  /// To be called at the end. Throws StudyError if the file has no rows behind the header.
+  void expect_some() const;
 
  private:
   /// Takes the next row that is not empty; nullopt at the end.
@@ -67,8 +77,10 @@ class CsvRows {
   std::string text_;
   std::string_view rest_;
   std::size_t line_ = 0;
+  bool has_rows_ = false;
+  double last_time_ = -std::numeric_limits<double>::infinity();
   std::size_t header_ = 0;
-  std::string header_text_;
+  std::vector<std::string> columns_;
   std::vector<std::string_view> fields_;
 };
 

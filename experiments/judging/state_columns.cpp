@@ -248,16 +248,6 @@ std::vector<std::size_t> truth_fields(const Names& header, const StateShape& sha
 constexpr double kQuaternionPlaceSlack = 2e-3;
 constexpr Eigen::Index kQuaternionPlace = 3;  // index of the quaternion, behind x, y, z
 
-/// Appends the time [s] of the next row, which must be later than the one before.
-void take_time(double time, const std::string& place, std::vector<double>& times) {
-  if (!times.empty() && time <= times.back()) {
-    throw StudyError(place + ": time " + to_text(time) +
-                     " s is not later than that of the row before (rows go forward in time): sort "
-                     "them, one row for each time");
-  }
-  times.push_back(time);
-}
-
 /// Normalises the quaternion at the end of the state of a pose in space.
 void normalise_quaternion(Eigen::VectorXd& state, const std::string& place) {
   const double length = state.tail<4>().norm();
@@ -318,10 +308,10 @@ std::size_t place_in(const StateRows& rows, double time, double tolerance, const
   auto k = static_cast<std::size_t>(after - rows.time.begin());
   if (k == rows.time.size() || (k > 0 && time - rows.time[k - 1] < rows.time[k] - time)) --k;
   if (std::abs(rows.time[k] - time) <= tolerance) return k;
-  throw StudyError(file.place() + ": no estimate in " + estimates.string() + " has time " +
-                   to_text(time) + " s (the nearest has " + to_text(rows.time[k]) +
-                   " s): give innovations the times of the estimates after them, or leave out "
-                   "innovations without an estimate");
+  file.refuse("no estimate in " + estimates.string() + " has time " + to_text(time) +
+              " s (the nearest has " + to_text(rows.time[k]) +
+              " s): give innovations the times of the estimates after them, or leave out "
+              "innovations without an estimate");
 }
 
 /// The number of components of a NIS. Throws StudyError that begins with `place` if `nis` is not a
@@ -361,7 +351,7 @@ StateRows read_estimates(const std::filesystem::path& path) {
   const EstimateFields fields = estimate_fields(file.columns(), file.place());
   StateRows rows{fields.shape, {}, {}, {}, {}, {}};
   while (file.next()) {
-    take_time(file.number(0, "time"), file.place(), rows.time);
+    rows.time.push_back(file.time());
     rows.state.push_back(state_in(file, fields.state, fields.shape));
     rows.covariance.push_back(covariance_in(file, fields));
     if (!fields.nis) continue;
@@ -384,12 +374,11 @@ StateRows read_truth(const std::filesystem::path& path, const StateShape& shape)
   const std::vector<std::size_t> fields = truth_fields(file.columns(), shape, file.place());
   StateRows rows{shape, {}, {}, {}, {}, {}};
   while (file.next()) {
-    take_time(file.number(0, "time"), file.place(), rows.time);
+    rows.time.push_back(file.time());
     rows.state.push_back(state_in(file, fields, shape));
   }
-  if (!rows.time.empty()) return rows;
-  throw StudyError(path.string() +
-                   ": no rows behind the header (the truth is empty): write one row for each time");
+  file.expect_some();
+  return rows;
 }
 
 Eigen::VectorXd truth_at(const StateRows& truth, double time, const TimeMatch& match,
@@ -439,14 +428,8 @@ void read_innovations(const fs::path& path, const fs::path& estimates, double to
   const EstimateFields fields = innovation_fields(file.columns(), file.place());
   std::vector<double> nis(rows.time.size());
   std::vector<std::uint32_t> dof(rows.time.size());
-  double before = -INFINITY;
   while (file.next()) {
-    const double time = file.number(0, "time");
-    if (time < before) {
-      throw StudyError(file.place() + ": time " + to_text(time) +
-                       " s is before that of the row above (rows go forward in time): sort them");
-    }
-    before = time;
+    const double time = file.time(CsvRows::Order::not_earlier);
     const auto [row_nis, row_dof] = squares_of(file, fields);
     if (rows.time.empty()) continue;
     const std::size_t k = place_in(rows, time, tolerance, file, estimates);

@@ -8,7 +8,6 @@
 #include <Eigen/Core>
 
 #include <span>
-#include <string>
 #include <vector>
 
 namespace montecarta::experiments {
@@ -38,16 +37,5 @@ struct DriveLog {
   std::vector<ReferencePath> references;   ///< at least one; the first is the leading one
   std::vector<Eigen::Vector2d> landmarks;  ///< [m] surveyed positions; empty if unknown
 };
-
-/// Bound on identities. No map has so many landmarks, so larger ones are mistakes.
-inline constexpr std::int32_t kMostIdentities = 1'000'000;
-
-/// Throws StudyError "FILE: record N: problem (why): remedy" for the first record (from 1) that is
-/// impossible: its time does not increase, or a number is not finite or not plausible for a
-/// vehicle, e.g. degrees instead of radians. Also checks that the parts fit together: odometry,
-/// scans and a reference exist, references have different names, identities are given to all
-/// detections or to none and belong to a landmark if landmarks are known. Files are those of kind =
-/// log in `folder`.
-void check_log(const DriveLog& log, const std::string& folder);
 
 }  // namespace montecarta::experiments

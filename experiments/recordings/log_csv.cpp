@@ -5,14 +5,17 @@
 #include "engine/errors.hpp"
 #include "experiments/files/files.hpp"
 #include "experiments/text/words.hpp"
+#include "experiments/worlds/world.hpp"
 #include "filters/models/vehicle_settings.hpp"
 
 #include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <initializer_list>
 #include <iterator>
+#include <set>
 #include <span>
 #include <system_error>
 
@@ -56,14 +59,41 @@ bool is_read_before(const std::string& a, const std::string& b) {
   return a != b && (a == kLeadingReference || (b != kLeadingReference && a < b));
 }
 
+/// A number whose magnitude is at most `most`. `why` gives its unit and range in errors.
+double limited(const CsvRows& rows, std::size_t field, const char* noun, double most,
+               const char* why) {
+  const double value = rows.number(field, noun);
+  if (std::abs(value) <= most) return value;
+  rows.refuse(std::string(noun) + " " + to_text(value) + " (" + why + "): correct it");
+}
+
+double time_in(CsvRows& rows, CsvRows::Order order = CsvRows::Order::later) {
+  constexpr double kLatestTime = 1e10;  // larger numbers are probably nanoseconds
+  limited(rows, 0, "time", kLatestTime, "seconds, at most 1e10");
+  return rows.time(order);
+}
+
+Eigen::Vector2d point_in(const CsvRows& rows, std::size_t first) {
+  constexpr const char* kWhy = "metres from an origin nearby, not beyond 1e6 m";
+  return {limited(rows, first, "coordinate", kFarthestCoordinate, kWhy),
+          limited(rows, first + 1, "coordinate", kFarthestCoordinate, kWhy)};
+}
+
+double heading_in(const CsvRows& rows, std::size_t field) {
+  return limited(rows, field, "heading", 1e3 * kPi, "radians");
+}
+
+double component_in(const CsvRows& rows, std::size_t field, const Component& component) {
+  return limited(rows, field, component.name, component.most, component.limit);
+}
+
 void read_start(const fs::path& path, DriveLog& log) {
   CsvRows rows(path, kStartHeader);
   const bool has_row = rows.next();
   if (has_row) {
-    log.start_time = rows.number(0, "time");
-    log.start = {.x = rows.number(1, "coordinate"),
-                 .y = rows.number(2, "coordinate"),
-                 .heading = rows.number(3, "heading")};
+    log.start_time = time_in(rows);
+    const Eigen::Vector2d place = point_in(rows, 1);
+    log.start = {.x = place.x(), .y = place.y(), .heading = heading_in(rows, 3)};
     if (!rows.next()) return;
   }
   throw StudyError(path.string() + ": " + (has_row ? "more than one row" : "no row") +
@@ -81,31 +111,47 @@ void read_odometry(const fs::path& path, DriveLog& log) {
   CsvRows rows(path, headers);
   log.controls = known[rows.header()];
   while (rows.next()) {
-    Odometry& odometry = log.odometry.emplace_back(Odometry{rows.number(0, "time"), {}});
-    for (std::size_t c = 0; c < log.controls.size(); ++c) {
-      odometry.control[c] = rows.number(c + 1, component_of(log.controls[c]).name);
-    }
+    Odometry& odometry = log.odometry.emplace_back(Odometry{time_in(rows), {}});
+    for (std::size_t c = 0; c < log.controls.size(); ++c)
+      odometry.control[c] = component_in(rows, c + 1, component_of(log.controls[c]));
   }
+  rows.expect_some();
 }
 
 /// The identity in a field; nullopt if the field is empty.
 std::optional<std::int32_t> identity_in(const CsvRows& rows, std::size_t column) {
+  constexpr std::uint64_t kMostIdentities = 1'000'000;  // no map has so many landmarks
   if (rows.field(column).empty()) return std::nullopt;
   const auto identity = to_count(rows.field(column));
   if (identity && *identity < kMostIdentities) return static_cast<std::int32_t>(*identity);
-  throw StudyError(rows.place() + ": '" + excerpt(rows.field(column)) +
-                   "' is no identity (a whole number from 0 to 999999): number the landmarks " +
-                   "from 0, or leave the field empty for clutter");
+  rows.refuse("'" + excerpt(rows.field(column)) +
+              "' is no identity (a whole number from 0 to 999999): number the landmarks from 0, or "
+              "leave the field empty for clutter");
 }
 
 Detection detection_in(const CsvRows& rows, std::span<const Quantity> components, bool identified) {
   Detection detection{.values = {}, .identity = Detection::kUnidentified};
   for (std::size_t i = 0; i < components.size(); ++i) {
-    detection[i] = rows.number(i + 1, component_of(components[i]).name);
+    detection[i] = component_in(rows, i + 1, component_of(components[i]));
+    if (components[i] != Quantity::range || detection[i] > 0.0) continue;
+    rows.refuse("range " + to_text(detection[i]) +
+                " (a detection is farther than 0 m): correct it");
   }
   if (!identified) return detection;
   detection.identity = identity_in(rows, components.size() + 1).value_or(Detection::kClutter);
   return detection;
+}
+
+/// Refuses a detection of a landmark that the scan has already, or that does not exist.
+void check_identity(const CsvRows& rows, std::int32_t identity, const DriveLog& log) {
+  if (identity < 0) return;
+  const std::string name = "identity " + std::to_string(identity);
+  if (std::ranges::count(log.scans.back().detections, identity, &Detection::identity) > 0)
+    rows.refuse(name + " twice (a scan sees a landmark once): correct one of the two");
+  const std::size_t known = log.landmarks.size();
+  if (known == 0 || static_cast<std::size_t>(identity) < known) return;
+  rows.refuse(name + " of " + std::to_string(known) +
+              " landmarks (they count from 0): give all landmarks, or none");
 }
 
 /// Returns whether all fields behind the time are empty.
@@ -125,8 +171,8 @@ std::vector<std::string> known_detections() {
   return headers;
 }
 
-/// Reads the scans. Their columns determine the sensor. Rows with the same time form one scan; a
-/// row with only a time is a scan without detections.
+/// Reads the scans, after the landmarks. Their columns determine the sensor. Rows with the same
+/// time form one scan; a row with only a time is a scan without detections.
 void read_scans(const fs::path& path, DriveLog& log) {
   CsvRows rows(path, known_detections());
   const bool identified = rows.header() % 2 == 1;
@@ -137,17 +183,20 @@ void read_scans(const fs::path& path, DriveLog& log) {
   const std::size_t fields = log.components.size() + (identified ? 1 : 0);
   std::vector<LoggedScan>& scans = log.scans;
   while (rows.next()) {
-    const double time = rows.number(0, "time");
+    const double time = time_in(rows, CsvRows::Order::not_earlier);
     const bool nothing = is_empty_scan(rows, fields);
     const bool again = !scans.empty() && scans.back().time == time;
     if (again && (nothing || scans.back().detections.empty())) {
-      throw StudyError(rows.place() + ": a scan at " + to_text(time) +
-                       " s that saw nothing has other rows (it is one row): delete one of them");
+      rows.refuse("a scan at " + to_text(time) +
+                  " s that saw nothing has other rows (it is one row): delete one of them");
     }
     if (!again) scans.push_back({time, {}});
     if (nothing) continue;
-    scans.back().detections.push_back(detection_in(rows, log.components, identified));
+    const Detection detection = detection_in(rows, log.components, identified);
+    check_identity(rows, detection.identity, log);
+    scans.back().detections.push_back(detection);
   }
+  rows.expect_some();
 }
 
 /// Reads the landmarks. If there is a column of identities, every identity from 0 on must occur
@@ -158,11 +207,9 @@ std::vector<Eigen::Vector2d> read_landmarks(const fs::path& path) {
   while (rows.next()) {
     const auto next = static_cast<std::int32_t>(landmarks.size());
     const auto identity = rows.header() == 1 ? identity_in(rows, 2).value_or(-1) : next;
-    landmarks.push_back({identity, {rows.number(0, "coordinate"), rows.number(1, "coordinate")}});
+    landmarks.push_back({identity, point_in(rows, 0)});
   }
-  if (landmarks.empty()) {
-    throw StudyError(path.string() + ": no landmarks (it is empty): add them, or remove the file");
-  }
+  rows.expect_some();
   std::ranges::stable_sort(landmarks, {}, [](const auto& landmark) { return landmark.first; });
   std::vector<Eigen::Vector2d> places;
   for (const auto& [identity, place] : landmarks) {
@@ -189,15 +236,62 @@ std::string reference_in(const fs::path& file) {
                    "reference_NAME.csv, landmarks.csv): rename it");
 }
 
+bool is_name(const std::string& name) {
+  constexpr const char* kAllowed =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
+  return name.size() <= 64 && name.find_first_not_of(kAllowed) == name.npos;
+}
+
 std::vector<ReferencePath> read_references(const fs::path& folder) {
   std::error_code failure;
   std::vector<ReferencePath> references;
+  std::set<std::string> names;
   for (const auto& entry : fs::directory_iterator(folder, failure)) {
     const std::string name = reference_in(entry.path());
-    if (!name.empty()) references.push_back(read_reference_csv(entry.path(), name));
+    if (name.empty()) continue;
+    if (!is_name(name)) {
+      throw StudyError(folder.string() + ": '" + excerpt(name) +
+                       "' is no name of a reference (letters, digits, _ and -): rename it");
+    }
+    if (!names.insert(name).second) {
+      throw StudyError(folder.string() + ": two references called " + name +
+                       " (each has a name of its own): rename one");
+    }
+    references.push_back(read_reference_csv(entry.path(), name));
+  }
+  if (references.empty()) {
+    throw StudyError(folder.string() +
+                     ": no reference (a drive is judged by one): add the fixes of a GPS, or "
+                     "another measurement of the path");
   }
   std::ranges::sort(references, is_read_before, &ReferencePath::name);
   return references;
+}
+
+/// Refuses scans before the start, where the pose is unknown, odometry that ends before the start,
+/// and scans long after the last odometry. Odometry holds until its next record, so if none follows
+/// for that long, the file was probably cut.
+void check_times(const DriveLog& log, const fs::path& folder) {
+  constexpr double kLongestHold = 5.0;  // [s]
+  const std::string scans = (folder / "detections.csv").string();
+  const std::string odometry = (folder / "odometry.csv").string();
+  const double first_scan = log.scans.front().time, last_scan = log.scans.back().time;
+  const double last_move = log.odometry.back().time;
+  const std::string start = to_text(log.start_time) + " s";
+  if (first_scan < log.start_time) {
+    throw StudyError(scans + ": the first is at " + to_text(first_scan) +
+                     " s, before the start at " + start +
+                     " (its pose is unknown): give an earlier start, or leave it out");
+  }
+  if (last_move < log.start_time) {
+    throw StudyError(odometry + ": all of it is before the start at " + start +
+                     " (the vehicle would never move): correct the time of the start");
+  }
+  if (last_scan <= last_move + kLongestHold) return;
+  throw StudyError(odometry + ": the last record is at " + to_text(last_move) +
+                   " s, the last scan at " + to_text(last_scan) +
+                   " s (the motion in between is unknown; was the file cut short?): "
+                   "take the whole file, or leave out the scans");
 }
 
 }  // namespace
@@ -206,18 +300,15 @@ DriveLog read_log_csv(const fs::path& folder) {
   DriveLog log;
   read_start(folder / "start.csv", log);
   read_odometry(folder / "odometry.csv", log);
+  if (fs::exists(folder / "landmarks.csv"))
+    log.landmarks = read_landmarks(folder / "landmarks.csv");
   read_scans(folder / "detections.csv", log);
   log.references = read_references(folder);
-  if (fs::exists(folder / "landmarks.csv")) {
-    log.landmarks = read_landmarks(folder / "landmarks.csv");
-  }
-  check_log(log, folder.string());
+  check_times(log, folder);
   return log;
 }
 
 namespace {
-
-namespace fs = std::filesystem;
 
 /// The text of a file, built row by row.
 class Table {
@@ -275,12 +366,6 @@ Table detection_table(const DriveLog& log) {
   return table;
 }
 
-void check_order(const DriveLog& log, const std::string& place) {
-  if (std::ranges::is_sorted(log.references, is_read_before, &ReferencePath::name)) return;
-  throw StudyError(place + ": references are not in the order of their names (in which they will " +
-                   "be read): rename them, or call the leading one 'reference'");
-}
-
 void make_folder(const fs::path& folder) {
   make_directory(folder);
   if (fs::is_empty(folder)) return;
@@ -295,8 +380,6 @@ void write_log_csv(const DriveLog& log, const fs::path& folder) {
 }
 
 void write_log_csv(const DriveLog& log, const fs::path& folder, const fs::path& truth_folder) {
-  check_log(log, folder.string());
-  check_order(log, folder.string());
   make_folder(folder);
   make_folder(truth_folder);
   Table start(kStartHeader[0]);
@@ -323,9 +406,9 @@ Eigen::Matrix3d covariance_of_sigmas(const CsvRows& rows, std::size_t first, int
     const std::size_t field = first + static_cast<std::size_t>(i);
     const double sigma = rows.number(field, "standard deviation");
     if (!(sigma >= kLeastDeviation)) {
-      throw StudyError(rows.place() + ": standard deviation " + std::string(rows.field(field)) +
-                       " (every fix has an error, at least 1e-9 m or rad): correct it, or leave "
-                       "the sigmas out if they are unknown");
+      rows.refuse("standard deviation " + std::string(rows.field(field)) +
+                  " (every fix has an error, at least 1e-9 m or rad): correct it, or leave the "
+                  "sigmas out if they are unknown");
     }
     covariance(i, i) = sigma * sigma;
   }
@@ -354,9 +437,20 @@ Eigen::Matrix3d covariance_in(const CsvRows& rows, std::size_t first, int dimens
     }
   }
   if (is_positive_definite(covariance, dimension)) return covariance;
-  throw StudyError(rows.place() +
-                   ": the covariance is not positive definite (variances must be above 0 and "
-                   "correlations between -1 and 1): correct it, or give standard deviations");
+  rows.refuse(
+      "the covariance is not positive definite (variances must be above 0 and correlations between "
+      "-1 and 1): correct it, or give standard deviations");
+}
+
+/// Refuses errors that are larger than any map or turn.
+void check_size(const CsvRows& rows, const Eigen::Matrix3d& covariance, int dimension) {
+  for (int i = 0; i < dimension; ++i) {
+    const double sigma = std::sqrt(covariance(i, i));
+    if (sigma <= (i == 2 ? kPi : kFarthestCoordinate)) continue;
+    rows.refuse("standard deviation " + to_text(sigma) + " of the " +
+                (i == 2 ? "heading (radians, at most pi)" : "position (metres, at most 1e6)") +
+                ": correct it");
+  }
 }
 
 }  // namespace
@@ -367,16 +461,18 @@ ReferencePath read_reference_csv(const std::filesystem::path& path, const std::s
   const std::size_t behind = headed ? 4 : 3;  // the first field that is neither time nor pose
   ReferencePath reference{.name = name, .time = {}, .position = {}, .heading = {}};
   while (rows.next()) {
-    reference.time.push_back(rows.number(0, "time"));
-    reference.position.emplace_back(rows.number(1, "coordinate"), rows.number(2, "coordinate"));
-    if (headed) reference.heading.push_back(rows.number(3, "heading"));
+    reference.time.push_back(time_in(rows));
+    reference.position.push_back(point_in(rows, 1));
+    if (headed) reference.heading.push_back(heading_in(rows, 3));
     const int dimension = reference.dimension();
     if (rows.header() >= kWithCovariance) {
       reference.covariance.push_back(covariance_in(rows, behind, dimension));
     } else if (rows.header() >= kWithSigmas) {
       reference.covariance.push_back(covariance_of_sigmas(rows, behind, dimension));
     }
+    if (!reference.covariance.empty()) check_size(rows, reference.covariance.back(), dimension);
   }
+  rows.expect_some();
   return reference;
 }
 

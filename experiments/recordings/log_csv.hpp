@@ -18,12 +18,15 @@ inline std::string file_of_reference(const std::string& name) {
 
 /// Reads a drive from a folder of comma-separated files (experiments/RECORDED_DRIVES.md):
 /// start.csv, odometry.csv, detections.csv, reference.csv or reference_NAME.csv, landmarks.csv.
-/// Throws StudyError with file and line or record if a file is missing or malformed.
+/// Throws StudyError with file and line if a file is missing or malformed, or if a number is not
+/// plausible for a vehicle, e.g. degrees instead of radians. Also checks that the parts fit
+/// together: odometry, scans and a reference exist, references have different names, and identities
+/// belong to a landmark if landmarks are known.
 DriveLog read_log_csv(const std::filesystem::path& folder);
 
-/// Writes `log` to a new or empty folder. Reading it gives the same log, bit for bit. Throws
-/// StudyError if the folder is not empty or the references are not in the order in which they are
-/// read, and RunError if writing fails.
+/// Writes `log` to a new or empty folder. Reading it gives the same log, bit for bit, if its
+/// references are in the order in which they are read. Throws StudyError if the folder is not
+/// empty, and RunError if writing fails.
 void write_log_csv(const DriveLog& log, const std::filesystem::path& folder);
 
 /// The same, but it writes references and landmarks, which an estimator must not see, to a separate
@@ -34,7 +37,7 @@ void write_log_csv(const DriveLog& log, const std::filesystem::path& folder,
 /// Reads a reference of a log (experiments/RECORDED_DRIVES.md): fixes of a position or a pose,
 /// optionally with standard deviations or the covariance of their errors. Throws StudyError with
 /// file and line if a row is malformed, a standard deviation is not positive or a covariance is not
-/// positive definite. check_log() checks the rest.
+/// positive definite.
 ReferencePath read_reference_csv(const std::filesystem::path& path, const std::string& name);
 
 /// The text of such a file. Reading it gives the same numbers, bit for bit.

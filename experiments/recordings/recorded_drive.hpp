@@ -39,7 +39,7 @@ class RecordedDrive final : public DriveSource {
     double min_range = 0.0;
   };
   /// Moves all scans by `scan_delay` [s] before their times in the log, because a laser scanner
-  /// needs time to send a scan. The log must have passed check_log().
+  /// needs time to send a scan.
   RecordedDrive(const DriveLog& log, const Reach& reach, double scan_delay = 0.0);
 
   const Itinerary& itinerary() const override { return itinerary_; }

@@ -79,7 +79,7 @@ TEST_F(StateFiles, AreRefusedWithFileLineAndRemedy) {
   EXPECT_THAT(complaint(kPoseHeader + "0.5,1,2,3,11,inf,22,13,23,33\n"), HasSubstr(":2: 'inf'"));
   EXPECT_THAT(complaint(kPoseHeader + "0.5,1,\x01\xff,3,11,12,22,13,23,33\n"), HasSubstr(":2: '"));
   EXPECT_THAT(complaint(kPoseHeader + "0.5,1,2,3,11,12,22,13,23,33"), HasSubstr(":2: the last"));
-  EXPECT_THAT(complaint(kPoseHeader + kRow + kRow), HasSubstr(":3: time 0.5 s is not later"));
+  EXPECT_THAT(complaint(kPoseHeader + kRow + kRow), HasSubstr(":3: time 0.5 s comes after 0.5 s"));
   EXPECT_THAT(complaint("time_s,x_m\n1,1\n"), HasSubstr(":1: no cov_x_x"));
   EXPECT_THAT(complaint("time_s,x_m,cov_x_x,cov_1_1\n"), HasSubstr("'cov_1_1' is no element"));
   EXPECT_THAT(complaint("time_s,x_m,cov_x_x,cov_0_0\n"), HasSubstr("by name and by index"));
@@ -152,7 +152,7 @@ TEST_F(InnovationFiles, HaveInnovationsAndTheirCovariance) {
 TEST_F(InnovationFiles, AreRefusedWithFileLineAndRemedy) {
   const std::string header = "time_s,nis,nis_dof\n";
   EXPECT_THAT(complaint(header + "1.5,1,1\n"), HasSubstr("innovation.csv:2: no estimate in"));
-  EXPECT_THAT(complaint(header + "2,1,1\n1,1,1\n"), HasSubstr(":3: time 1 s is before"));
+  EXPECT_THAT(complaint(header + "2,1,1\n1,1,1\n"), HasSubstr(":3: time 1 s comes after 2 s"));
   EXPECT_THAT(complaint(header + "2,-1,1\n"), HasSubstr(":2: nis -1 with nis_dof 1"));
   EXPECT_THAT(complaint("time_s,nis\n1,1\n"), HasSubstr("write time_s,nis,nis_dof"));
   EXPECT_THAT(complaint("time_s,a_m\n1,1\n"), HasSubstr("no cov_a_a"));
