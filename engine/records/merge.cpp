@@ -153,18 +153,10 @@ std::vector<ByteRange> written_later(const ResultSlabs& slabs) {
   return merged;
 }
 
-std::uint64_t copy_runs(const PosixFile& from, const Shard& shard, RunSpan runs,
-                        const PosixFile& to, const ResultSlabs& slabs, std::size_t index) {
-  const std::size_t first = shard.index(runs.first);
-  copy_slabs({from, slabs_of_run(shard.slabs), first}, {to, slabs_of_run(slabs), index},
-             runs.count);
-  std::vector<RunStatus> status(runs.count);
-  std::uint64_t failed = 0;
-  for (const CellSlabs& cell : shard.slabs.cells) {
-    from.read_at(cell.status.at(first), std::as_writable_bytes(std::span(status)));
-    failed += static_cast<std::uint64_t>(std::ranges::count(status, RunStatus::failed));
-  }
-  return failed;
+void copy_runs(const PosixFile& from, const Shard& shard, RunSpan runs, const PosixFile& to,
+               const ResultSlabs& slabs, std::size_t index) {
+  copy_slabs({from, slabs_of_run(shard.slabs), shard.index(runs.first)},
+             {to, slabs_of_run(slabs), index}, runs.count);
 }
 
 void copy_cell(const PosixFile& from, const CellSlabs& source, const PosixFile& to,
@@ -291,8 +283,7 @@ namespace {
 
 /// Chooses the shard from which each run of the study is copied. Throws StudyError if a run differs
 /// between two shards.
-std::vector<std::size_t> choose_sources(const std::vector<Shard>& shards, std::uint64_t runs,
-                                        MergeSummary& summary) {
+std::vector<std::size_t> choose_sources(const std::vector<Shard>& shards, std::uint64_t runs) {
   constexpr std::size_t none = static_cast<std::size_t>(-1);
   std::vector<std::size_t> source(runs, none);
   for (std::size_t s = 0; s < shards.size(); ++s) {
@@ -301,7 +292,6 @@ std::vector<std::size_t> choose_sources(const std::vector<Shard>& shards, std::u
         source[run] = s;
       } else {
         expect_equal(shards[source[run]], shards[s], run);
-        ++summary.overlapping;
       }
     }
   }
@@ -344,7 +334,7 @@ std::vector<RunSpan> given_by(const Shard& shard, std::size_t s,
 }
 
 void copy_runs(const std::vector<Shard>& shards, const std::vector<std::size_t>& source,
-               const PosixFile& file, const ResultSlabs& slabs, MergeSummary& summary) {
+               const PosixFile& file, const ResultSlabs& slabs) {
   std::vector<std::byte> buffer;
   for (std::size_t s = 0; s < shards.size(); ++s) {
     const PosixFile from(shards[s].path, PosixFile::Mode::read);
@@ -352,7 +342,7 @@ void copy_runs(const std::vector<Shard>& shards, const std::vector<std::size_t>&
     // which must match the bytes in both shards.
     for (std::uint64_t run : shards[s].complete_runs) expect_whole(from, shards[s], run, buffer);
     for (const RunSpan& runs : given_by(shards[s], s, source))
-      summary.failed += copy_runs(from, shards[s], runs, file, slabs, runs.first);
+      copy_runs(from, shards[s], runs, file, slabs, runs.first);
   }
   double seconds = 0.0;
   for (const Shard& shard : shards) seconds += shard.wall_seconds;
@@ -370,10 +360,10 @@ MergeSummary merge_results(const fs::path& out, const std::vector<fs::path>& pat
   MergeSummary summary;
   summary.runs = description.study_runs;
   summary.cells = description.cells.size();
-  const auto source = choose_sources(shards, description.study_runs, summary);
+  const auto source = choose_sources(shards, description.study_runs);
   note_builds(shards, summary);
   const auto fill = [&](const PosixFile& file, const ResultSlabs& slabs) {
-    copy_runs(shards, source, file, slabs, summary);
+    copy_runs(shards, source, file, slabs);
   };
   summary.bytes = write_at_once(out, whole_study(description, shards.size()), fill, existing);
   return summary;

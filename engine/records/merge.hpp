@@ -42,9 +42,9 @@ struct RunSpan {
 };
 
 /// Copies all cells and the true paths of some runs to those from run index `index` on of another
-/// file. Returns the number of failed runs of cells.
-std::uint64_t copy_runs(const PosixFile& from, const Shard& shard, RunSpan runs,
-                        const PosixFile& to, const ResultSlabs& slabs, std::size_t index);
+/// file.
+void copy_runs(const PosixFile& from, const Shard& shard, RunSpan runs, const PosixFile& to,
+               const ResultSlabs& slabs, std::size_t index);
 /// Copies one run of one cell between files with the same runs. The status is copied last.
 void copy_cell(const PosixFile& from, const CellSlabs& source, const PosixFile& to,
                const CellSlabs& sink, std::size_t run_index);
@@ -61,8 +61,6 @@ void copy_truth(const PosixFile& from, const ResultSlabs& source, const PosixFil
 struct MergeSummary {
   std::uint64_t runs = 0;
   std::size_t cells = 0;
-  std::uint64_t failed = 0;        ///< number of runs of cells that are stored as failed
-  std::uint64_t overlapping = 0;   ///< number of runs that are equal in more than one shard
   std::uint64_t bytes = 0;         ///< size of the new file
   std::vector<std::string> notes;  ///< messages for the user, e.g. about different builds
 };

@@ -172,7 +172,7 @@ struct Source {
 
 /// {group from first_run on} Sources without a shard are missing.
 std::vector<Source> sources_of(const std::vector<SumShard>& shards, std::uint64_t first_run,
-                               std::uint64_t last_run, MergeSummary& summary) {
+                               std::uint64_t last_run) {
   std::vector<Source> sources((last_run - first_run + kRunsOfAGroup - 1) / kRunsOfAGroup);
   for (const SumShard& shard : shards) {
     for (std::size_t g = 0; g < shard.groups.front().size(); ++g) {
@@ -181,7 +181,6 @@ std::vector<Source> sources_of(const std::vector<SumShard>& shards, std::uint64_
       Source& source = sources[(group.first_run - first_run) / kRunsOfAGroup];
       if (source.shard != nullptr) {
         expect_equal_groups(*source.shard, source.group, shard, g);
-        summary.overlapping += group.runs;
       } else {
         source = {&shard, g};
       }
@@ -206,14 +205,12 @@ void expect_all_groups(const std::vector<Source>& sources, std::uint64_t first_r
 
 /// All groups of a new file, one behind the other.
 SummedRuns summed_runs(const std::vector<Source>& sources, std::uint64_t first_run,
-                       std::uint64_t last_run, MergeSummary& summary) {
-  SummedRuns sums{first_run, last_run, std::vector<std::uint64_t>(summary.cells)};
-  for (const Source& source : sources) {
-    for (std::size_t c = 0; c < summary.cells; ++c) {
-      const SumGroup& group = source.shard->groups[c][source.group];
-      sums.words[c] += kGroupHeadWords + group.words;
-      summary.failed += group.failed;
-    }
+                       std::uint64_t last_run) {
+  SummedRuns sums{first_run, last_run, {}};
+  sums.words.resize(sources.front().shard->groups.size());
+  for (const auto& [shard, g] : sources) {
+    for (std::size_t c = 0; c < sums.words.size(); ++c)
+      sums.words[c] += kGroupHeadWords + shard->groups[c][g].words;
   }
   return sums;
 }
@@ -243,12 +240,12 @@ MergeSummary merge_groups(const fs::path& out, const std::vector<fs::path>& path
                           std::uint64_t first_run, std::uint64_t last_run, Existing existing) {
   const std::vector<SumShard> shards = open_sum_shards(paths);
   MergeSummary summary{.runs = last_run - first_run, .notes = {}};
-  const std::vector<Source> sources = sources_of(shards, first_run, last_run, summary);
+  const std::vector<Source> sources = sources_of(shards, first_run, last_run);
   expect_all_groups(sources, first_run, last_run, paths.front());
   const SumShard& first = *sources.front().shard;
   summary.cells = first.description.cells.size();
   const ResultDescription description =
-      with_sums(first.description, summed_runs(sources, first_run, last_run, summary));
+      with_sums(first.description, summed_runs(sources, first_run, last_run));
   double seconds = 0.0;
   for (const SumShard& shard : shards) seconds += shard.wall_seconds;
   const auto fill = [&](const PosixFile& file, const ResultSlabs& slabs) {
