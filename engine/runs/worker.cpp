@@ -27,42 +27,22 @@ std::string_view defect_of(const PoseEstimate* estimate) {
   return {};
 }
 
-/// The progress of a run from step to step.
-class RunStepper {
- public:
-  RunStepper(const RunConditions& conditions, SlamFilter& filter, Recorder& recorder,
-             std::size_t particles)
-      : conditions_(conditions), filter_(filter), recorder_(recorder), particles_(particles) {}
-
-  void start() { filter_.start(conditions_.itinerary.start); }
-  bool arrived() const { return step_ == conditions_.itinerary.steps(); }
-  std::uint32_t step() const { return step_; }
-  void next() { ++step_; }
-
-  /// Runs one step. Returns a description of the defect of its estimate; empty if there is none.
-  std::string_view take_step() {
-    const Itinerary& itinerary = conditions_.itinerary;
-    const StepContext context(conditions_.seed, conditions_.run, step_,
-                              conditions_.spare_threads.lend(particles_), &conditions_.stop);
-    const Control& control = conditions_.drive.controls[step_];
-    if (!control.stands(itinerary.moving_controls))
-      filter_.predict(context, control, itinerary.duration(step_));
-    while (scan_ < itinerary.scans() && itinerary.scan_step[scan_] == step_) {
-      filter_.update(context, conditions_.drive.scan(scan_));
-      const std::string_view flaw = defect_of(recorder_.after_scan(filter_, scan_++));
-      if (!flaw.empty()) return flaw;
-    }
-    return defect_of(recorder_.after_step(filter_, step_));
+/// Runs one step, with the scans from `scan` on that end it. Returns a description of the defect of
+/// its estimate; empty if there is none.
+std::string_view take_step(const RunConditions& conditions, const StepContext& context,
+                           SlamFilter& filter, Recorder& recorder, std::size_t& scan) {
+  const Itinerary& itinerary = conditions.itinerary;
+  const std::size_t step = context.step();
+  const Control& control = conditions.drive.controls[step];
+  if (!control.stands(itinerary.moving_controls))
+    filter.predict(context, control, itinerary.duration(step));
+  for (; scan < itinerary.scans() && itinerary.scan_step[scan] == step; ++scan) {
+    filter.update(context, conditions.drive.scan(scan));
+    const std::string_view flaw = defect_of(recorder.after_scan(filter, scan));
+    if (!flaw.empty()) return flaw;
   }
-
- private:
-  const RunConditions& conditions_;
-  SlamFilter& filter_;
-  Recorder& recorder_;
-  std::size_t particles_;
-  std::uint32_t step_ = 0;
-  std::size_t scan_ = 0;
-};
+  return defect_of(recorder.after_step(filter, step));
+}
 
 }  // namespace
 
@@ -71,13 +51,18 @@ RunEnd run_one(const RunConditions& conditions, SlamFilter& filter, Recorder& re
   record.clear();
   recorder.expect_scans(conditions.itinerary.scans());
   const CpuClock clock;
-  RunStepper walk(conditions, filter, recorder, record.layout().particles());
+  const std::size_t particles = record.layout().particles();
+  std::uint32_t step = 0;
+  std::size_t scan = 0;
   try {
-    for (walk.start(); !walk.arrived(); walk.next()) {
+    filter.start(conditions.itinerary.start);
+    for (; step < conditions.itinerary.steps(); ++step) {
       if (conditions.stop.is_set()) return RunEnd::dropped;
-      const std::string_view flaw = walk.take_step();
+      const StepContext context(conditions.seed, conditions.run, step,
+                                conditions.spare_threads.lend(particles), &conditions.stop);
+      const std::string_view flaw = take_step(conditions, context, filter, recorder, scan);
       if (flaw.empty()) continue;
-      record.mark_failed(walk.step(), flaw, clock.seconds());
+      record.mark_failed(step, flaw, clock.seconds());
       return RunEnd::recorded;
     }
     record.mark_complete(clock.seconds());
@@ -87,9 +72,9 @@ RunEnd run_one(const RunConditions& conditions, SlamFilter& filter, Recorder& re
     throw;  // also a failure of the machine
   } catch (const std::exception& error) {
     if (conditions.stop.is_set()) return RunEnd::dropped;  // the stop may have caused the exception
-    record.mark_failed(walk.step(), error.what(), clock.seconds());
+    record.mark_failed(step, error.what(), clock.seconds());
   } catch (...) {
-    record.mark_failed(walk.step(), "an exception that is no std::exception", clock.seconds());
+    record.mark_failed(step, "an exception that is no std::exception", clock.seconds());
   }
   return RunEnd::recorded;
 }
