@@ -31,7 +31,7 @@ OptionSpec option_in(const std::string& line) {
     } else if (word == "...") {
       option.repeatable = true;
     } else {
-      option.values.push_back(word);
+      option.value = word;
       // NAME,... is one word with commas.
       option.is_list = word.ends_with("...") && word.find(",...") == std::string::npos;
     }
@@ -127,12 +127,11 @@ po::options_description described(const CommandSpec& spec) {
   po::options_description all;
   const auto add = [&](const OptionSpec& option) {
     const std::string names = option.name + (option.letter.empty() ? "" : "," + option.letter);
-    if (option.values.empty()) {
+    if (option.value.empty()) {
       all.add_options()(names.c_str(), po::value<bool>()->zero_tokens()->implicit_value(true));
-    } else if (option.values.size() == 1 && !option.is_list) {
-      all.add_options()(names.c_str(), po::value<Texts>()->composing());
     } else {
-      all.add_options()(names.c_str(), po::value<Texts>()->multitoken()->composing());
+      auto* values = po::value<Texts>()->composing();
+      all.add_options()(names.c_str(), option.is_list ? values->multitoken() : values);
     }
   };
   std::ranges::for_each(spec.options, add);
@@ -165,8 +164,7 @@ po::parsed_options parsed(const CommandSpec& spec, const Texts& words,
 
 /// "-o OUT.h5"
 std::string spelling_of(const OptionSpec& option) {
-  return (option.letter.empty() ? "--" + option.name : "-" + option.letter) + " " +
-         joined(option.values, " ");
+  return (option.letter.empty() ? "--" + option.name : "-" + option.letter) + " " + option.value;
 }
 
 /// Checks the values of an option that was given `times` times.
@@ -175,13 +173,8 @@ void check_values(const OptionSpec& option, const Texts& values, std::size_t tim
     throw StudyError("--" + option.name + ": given " + std::to_string(times) +
                      " times (once is meant): remove all but one");
   }
-  if (option.is_list ? values.empty() : values.size() != option.values.size() * times) {
-    throw StudyError("--" + option.name + ": " + std::to_string(values.size()) +
-                     " values (it takes " + std::to_string(option.values.size()) + "): write --" +
-                     option.name + " " + joined(option.values, " "));
-  }
-  if (option.values.empty() || option.values.front().find('|') == std::string::npos) return;
-  const Texts known = split(option.values.front(), '|');
+  if (option.value.find('|') == std::string::npos) return;
+  const Texts known = split(option.value, '|');
   item_called(
       values.front(), known, std::identity(),
       "--" + option.name + " " + values.front() + ": not known (one of " + joined(known) + ")");

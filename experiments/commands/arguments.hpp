@@ -18,9 +18,9 @@ namespace montecarta::experiments {
 
 /// One option of a command.
 struct OptionSpec {
-  std::string name;                 ///< without dashes
-  std::string letter;               ///< one letter, or "" if there is none
-  std::vector<std::string> values;  ///< names of the values that follow it; empty: a flag
+  std::string name;    ///< without dashes
+  std::string letter;  ///< one letter, or "" if there is none
+  std::string value;   ///< name of the value that follows it; empty: a flag
   std::string meaning;
   bool is_required = false;
   bool repeatable = false;

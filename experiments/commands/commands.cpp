@@ -115,8 +115,8 @@ std::string help_text(const CommandSpec& spec) {
   TextPairs options;
   for (const OptionSpec& option : spec.options) {
     const std::string letter = option.letter.empty() ? "    " : "-" + option.letter + ", ";
-    const std::string values = option.values.empty() ? "" : " " + joined(option.values, " ");
-    options.emplace_back(letter + "--" + option.name + values, option.meaning);
+    const std::string value = option.value.empty() ? "" : " " + option.value;
+    options.emplace_back(letter + "--" + option.name + value, option.meaning);
   }
   options.emplace_back("    --help", "print this text");
   return wrapped("usage: montecarta " + spec.usage + (spec.options.empty() ? "" : " [options]") +

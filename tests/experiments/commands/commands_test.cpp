@@ -55,7 +55,6 @@ TEST_F(Commands, WrongInputIsNamedWithItsRemedy) {
   expect_wrong({"list", "filtres"}, "did you mean filters?");
   expect_wrong({"info", "absent.h5"}, "absent.h5");
   expect_wrong({"bounds", "--runs", "30"}, "--dim D");
-  expect_wrong({"bounds", "--match", "2.19", "many"}, "--match many: no end of an interval");
   expect_wrong({"report", "absent.h5"}, "report: -o DIR is missing");
   expect_wrong({"plan", "--dim", "3"}, "--ratio R");
   expect_wrong({"plan", "--dim", "3", "--ratio", "1"}, "neither 1 nor 0");
@@ -176,10 +175,7 @@ TEST_F(Commands, CheckRunsNothing) {
 
 TEST_F(Commands, BoundsAreExactAndPlanSaysHowManyRuns) {
   EXPECT_THAT(call({"bounds", "--runs", "30", "--dim", "3"}).out, testing::StartsWith("[2.188"));
-  EXPECT_THAT(call({"bounds", "--match", "1.3", "2.79"}).out, testing::ContainsRegex("20 +2 +0.9"));
-  EXPECT_EQ(call({"bounds", "--match", "2.79"}).code, 2);
-  expect_wrong({"bounds", "--runs", "30", "--dim", "3", "--match", "1.3", "2.79"},
-               "--match and --runs");
+  expect_wrong({"bounds", "--runs", "30"}, "--dim D is missing");
   const std::string out = call({"plan", "--dim", "3", "--ratio", "1.2", "--scans", "100"}).out;
   EXPECT_THAT(out, testing::ContainsRegex("constant +314 +3686\n"));
   EXPECT_THAT(out, testing::ContainsRegex("100 independent scans +20 +124\n"));
@@ -350,7 +346,6 @@ bakes
 --hot
 --grain rye|oat  which
 --from NAME...  a list
---match LO HI  two values
 
 Bakes a
 loaf.
@@ -373,12 +368,11 @@ std::string complaint_about(const std::vector<std::string>& words) {
 
 TEST(Arguments, AreOptionsAndOperandsInAnyOrder) {
   const Arguments arguments(kSpec, {"--set", "a=1", "rye", "-o", "bread", "--hot", "--set=b=2",
-                                    "tin", "--match", "1", "2", "--from", "x", "y"});
+                                    "tin", "--from", "x", "y"});
   EXPECT_THAT(arguments.operands(), ElementsAre("rye", "tin"));
   EXPECT_EQ(arguments.text("output"), "bread");
   EXPECT_TRUE(arguments.has("hot"));
   EXPECT_THAT(arguments.texts("set"), ElementsAre("a=1", "b=2"));
-  EXPECT_THAT(arguments.texts("match"), ElementsAre("1", "2"));
   EXPECT_THAT(arguments.texts("from"), ElementsAre("x", "y"));
 }
 
@@ -389,7 +383,7 @@ TEST(Arguments, AreRefusedWhereTheyAreNotWhatTheCommandTakes) {
       << "no guessing";
   EXPECT_THAT(complaint_about({"rye", "--hot", "--hot"}), HasSubstr("--hot: given 2 times"));
   EXPECT_THAT(complaint_about({"rye", "-o", "a", "-o", "b"}), HasSubstr("--output: given 2 times"));
-  EXPECT_THAT(complaint_about({"rye", "--match", "1"}), HasSubstr("--match: 1 values"));
+  EXPECT_THAT(complaint_about({"rye", "-o", "a", "--from"}), testing::StartsWith("bake: "));
   EXPECT_THAT(complaint_about({"rye", "-o"}), testing::StartsWith("bake: "));
   EXPECT_THAT(complaint_about({"rye", "-o", "a", "--grain", "ryo"}),
               HasSubstr("(one of rye, oat): did you mean rye?"));
@@ -400,7 +394,7 @@ TEST(Arguments, ReadNumbersWithinLimits) {
   const Arguments arguments(kSpec, {"rye", "-o", "7", "--set", "2.5"});
   EXPECT_EQ(arguments.count("output", 1, 9), 7U);
   EXPECT_EQ(arguments.number("set", 0.0, 9.0), 2.5);
-  EXPECT_EQ(arguments.number("match", 0.0, 9.0), std::nullopt);
+  EXPECT_EQ(arguments.number("from", 0.0, 9.0), std::nullopt);
   EXPECT_THROW(arguments.count("output", 8, 9), StudyError);
   EXPECT_THROW(arguments.count("set", 0, 9), StudyError);
 }
