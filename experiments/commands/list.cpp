@@ -78,11 +78,10 @@ std::string fallback_text(const Setting& setting) {
 TextPairs facts_of(const Setting& setting) {
   TextPairs facts = {{"value", demand_of(setting)}, {"default", fallback_text(setting)}};
   if (!setting.unit.empty() && setting.unit != "1") facts.emplace_back("unit", setting.unit);
-  if (!setting.kinds.empty())
-    facts.emplace_back("only if", "scenario.kind = " + joined(setting.kinds, " or "));
-  if (!setting.applies_to.empty())
-    facts.emplace_back("only if", setting.section + "." + setting.chooser + " = " +
-                                      joined(setting.applies_to, " or "));
+  for (const auto& [section, key, values] : setting.conditions) {
+    if (!values.empty())
+      facts.emplace_back("only if", section + "." + key + " = " + joined(values, " or "));
+  }
   return facts;
 }
 

@@ -26,9 +26,7 @@ class SectionOfTable {
 
   // Each returns the setting, so that more can be said of it before the next one is added.
   Setting& add(const Parameter& parameter) const {
-    Setting& setting = table_.emplace_back(Setting{parameter, name_});
-    setting.kinds = kinds_;
-    return setting;
+    return table_.emplace_back(Setting{parameter, name_, {{"scenario", "kind", kinds_}}});
   }
   Setting& text(const char* key, const char* meaning) const {
     return add({.key = key, .fallback = "", .meaning = meaning});
@@ -48,7 +46,13 @@ class SectionOfTable {
   }
   /// Settings that only some vehicles have.
   void add_for_vehicles(const std::vector<Parameter>& parameters) const {
-    for (const Parameter& parameter : parameters) add(parameter).chooser = "vehicle";
+    for (const Parameter& parameter : parameters)
+      only_if(add(parameter), "vehicle", parameter.applies_to);
+  }
+
+  /// Restricts a setting to some values of an earlier one of its section.
+  void only_if(Setting& setting, const char* key, const std::vector<std::string>& values) const {
+    setting.conditions.push_back({name_, key, values});
   }
 
  private:
@@ -92,8 +96,7 @@ void add_sensor_kind(const SectionOfTable& section, double least) {
        {Quantity::range, Quantity::bearing, Quantity::forward, Quantity::left}) {
     Setting& deviation = section.add(component_of(quantity).sigma);
     deviation.least = least;
-    deviation.chooser = "sensor";
-    deviation.applies_to = sensors_with(quantity);
+    section.only_if(deviation, "sensor", sensors_with(quantity));
   }
 }
 
@@ -112,8 +115,7 @@ void add_course(const SectionOfTable& scenario) {
       "whether the pilot sees the true pose. In closed_loop it steers by the true pose. In "
       "open_loop it applies the controls of the noise-free drive, so that the vehicle "
       "strays from the way-points.");
-  pilot.chooser = "noise";
-  pilot.applies_to = {"matched"};
+  scenario.only_if(pilot, "noise", {"matched"});
   scenario.choice(
       "map", {"fixed", "random"},
       "whether landmarks are displaced in every run. With fixed they are where the world has them. "

@@ -112,14 +112,6 @@ std::string most_of(const Parameter& option) {
 
 }  // namespace
 
-bool Setting::is_for(std::string_view scenario_kind) const {
-  return kinds.empty() || std::ranges::find(kinds, scenario_kind) != kinds.end();
-}
-
-bool Setting::is_for_choice(std::string_view choice) const {
-  return applies_to.empty() || std::ranges::find(applies_to, choice) != applies_to.end();
-}
-
 std::optional<std::string> Setting::fallback_for(std::string_view scenario_kind) const {
   for (const auto& [of_kind, value] : fallback_of_kind) {
     if (of_kind != scenario_kind) continue;
@@ -178,23 +170,17 @@ const Setting& known_setting(const IniEntry& entry) {
                           " (it would have no effect)");
 }
 
-[[noreturn]] void throw_out_of_place(const Setting& setting, const std::string& kind,
-                                     const std::string& place) {
+[[noreturn]] void throw_out_of_place(const Setting& setting, const Condition& broken,
+                                     const std::string& value, const std::string& place) {
   const auto in_belief = [&](const Setting& other) {
     return other.section == "belief" && other.key == setting.key;
   };
-  const bool believed = std::ranges::any_of(study_settings(), in_belief);
-  throw StudyError(place + ": " + setting.section + "." + setting.key +
-                   " does not apply to a scenario of kind " + kind + " (it is for " +
-                   joined(setting.kinds) +
-                   "): " + (believed ? "give it under [belief], or remove it" : "remove it"));
-}
-
-[[noreturn]] void throw_other_choice(const Setting& setting, const std::string& choice,
-                                     const std::string& place) {
-  throw StudyError(place + ": " + setting.section + "." + setting.key + " does not apply to a " +
-                   setting.chooser + " " + choice + " (it is for " + joined(setting.applies_to) +
-                   "): remove it, or correct " + setting.section + "." + setting.chooser);
+  const bool believed = broken.key == "kind" && std::ranges::any_of(study_settings(), in_belief);
+  const std::string chooser = broken.section + "." + broken.key;
+  throw StudyError(place + ": " + setting.section + "." + setting.key + " does not apply to " +
+                   chooser + " = " + value + " (it is for " + joined(broken.values) +
+                   "): remove it, or " +
+                   (believed ? "give it under [belief]" : "correct " + chooser));
 }
 
 }  // namespace
@@ -225,13 +211,9 @@ void Settings::fill_in(const std::string& name) {
   const std::string kind = scenario_kind();
   for (const Setting& setting : study_settings()) {
     const auto given = values_.find({setting.section, setting.key});
-    if (!setting.is_for(kind)) {
-      if (given != values_.end()) throw_out_of_place(setting, kind, given->second.place);
-      continue;
-    }
-    if (!is_for_choice(setting)) {
+    if (const Condition* broken = broken_condition(setting)) {
       if (given == values_.end()) continue;
-      throw_other_choice(setting, text(setting.section, setting.chooser), given->second.place);
+      throw_out_of_place(setting, *broken, text(broken->section, broken->key), given->second.place);
     }
     if (given != values_.end()) continue;
     const std::optional<std::string> fallback = setting.fallback_for(kind);
@@ -268,9 +250,15 @@ const Settings::Value& Settings::at(std::string_view section, std::string_view k
   return found->second;
 }
 
-/// Returns whether a setting applies, given the setting that chooses, which is filled in earlier.
-bool Settings::is_for_choice(const Setting& setting) const {
-  return setting.chooser.empty() || setting.is_for_choice(text(setting.section, setting.chooser));
+/// The first condition of a setting that does not hold; nullptr if the setting applies.
+const Condition* Settings::broken_condition(const Setting& setting) const {
+  const auto is_broken = [&](const Condition& condition) {
+    const std::vector<std::string>& values = condition.values;
+    return !values.empty() &&
+           std::ranges::count(values, text(condition.section, condition.key)) == 0;
+  };
+  const auto found = std::ranges::find_if(setting.conditions, is_broken);
+  return found == setting.conditions.end() ? nullptr : &*found;
 }
 
 bool Settings::has(std::string_view section, std::string_view key) const {

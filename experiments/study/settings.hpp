@@ -42,21 +42,23 @@ inline constexpr const char* kFromScenario = "scenario";
 inline constexpr const char* kRequired = "(required)";
 inline constexpr const char* kUsualWithin = "1.1";  ///< equals kUsualMargin of the analysis
 
+/// The values of a setting with which another one applies; empty: all values.
+struct Condition {
+  std::string section, key;
+  std::vector<std::string> values;
+};
+
 /// One setting of a study file. The table of settings is used for parsing, checking, the resolved
 /// text, and `montecarta list settings`.
 struct Setting : Parameter {
   std::string section = {};
-  /// Kinds of scenario (scenario.kind) to which the setting applies; empty: all.
-  std::vector<std::string> kinds = {};
-  /// "vehicle", "sensor" or "noise": the setting of the same section that determines whether this
-  /// one applies, by its values in `applies_to`; empty: it always applies.
-  std::string chooser = {};
+  /// All must hold for the setting to apply: on scenario.kind, then on the vehicle, the sensor or
+  /// the noise of its section. The settings in them stand before it in the table.
+  std::vector<Condition> conditions = {};
   /// Pairs (kind of scenario, default) for kinds with a default of their own. kFromScenario stands
   /// for the scenario's value of that key, kRequired for no default.
   std::vector<std::pair<std::string, std::string>> fallback_of_kind = {};
 
-  bool is_for(std::string_view scenario_kind) const;
-  bool is_for_choice(std::string_view choice) const;
   std::optional<std::string> fallback_for(std::string_view scenario_kind) const;
 };
 
@@ -106,7 +108,7 @@ class Settings {
   void take(const IniEntry& entry);
   void fill_in(const std::string& name);
   std::string copied_from_scenario(const Setting& setting) const;
-  bool is_for_choice(const Setting& setting) const;
+  const Condition* broken_condition(const Setting& setting) const;
   const Value& at(std::string_view section, std::string_view key) const;
 
   std::map<Name, Value> values_;

@@ -313,7 +313,8 @@ TEST_F(RecordedStudy, RefusesAnotherDriveThanItWasMadeWith) {
 
 TEST_F(RecordedStudy, SaysWhatDoesNotFitARecordedDrive) {
   EXPECT_THAT(complaint({}), "nothing");
-  EXPECT_THAT(complaint({"scenario.loops=2"}), HasSubstr("scenario.loops does not apply to a"));
+  EXPECT_THAT(complaint({"scenario.loops=2"}),
+              HasSubstr("scenario.loops does not apply to scenario.kind = log"));
   EXPECT_THAT(complaint({"scenario.sigma_speed=2"}), HasSubstr("give it under [belief]"));
   EXPECT_THAT(complaint({"scenario.path=nowhere"}), HasSubstr("no folder 'nowhere'"));
   EXPECT_THAT(complaint({"scenario.reference=gpz"}), HasSubstr("did you mean gps?"));

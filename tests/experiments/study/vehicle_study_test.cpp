@@ -56,9 +56,9 @@ TEST(VehicleStudy, WhatIsOfAnotherVehicleOrNoiseIsRefused) {
   EXPECT_THAT(complaint(kRobot, {"scenario.wheelbase=2"}),
               HasSubstr("scenario.wheelbase does not apply"));
   EXPECT_THAT(complaint(kRobot, {"belief.sigma_steer_deg=2"}),
-              HasSubstr("belief.sigma_steer_deg does not apply to a vehicle differential_drive"));
+              HasSubstr("sigma_steer_deg does not apply to belief.vehicle = differential_drive"));
   EXPECT_THAT(complaint(kRobot, {"scenario.noise=measured-control", "scenario.pilot=open_loop"}),
-              HasSubstr("scenario.pilot does not apply to a noise measured-control"));
+              HasSubstr("pilot does not apply to scenario.noise = measured-control"));
   EXPECT_THAT(resolved_text(parsed(kRobot, {"scenario.noise=matched", "scenario.pilot=open_loop"})),
               HasSubstr("pilot = open_loop\n"));
 }
@@ -105,7 +105,7 @@ TEST(SensorStudy, ASensorHasItsOwnNoiseAndNoOther) {
               AllOf(HasSubstr("sigma_range"), Not(HasSubstr("sigma_position"))));
   EXPECT_THAT(
       complaint(of_cell("ekf_slam"), {"scenario.sensor=bearing_only", "scenario.sigma_range=1"}),
-      AllOf(HasSubstr("scenario.sigma_range does not apply to a sensor bearing_only"),
+      AllOf(HasSubstr("sigma_range does not apply to scenario.sensor = bearing_only"),
             HasSubstr("range_bearing, range_only")));
 }
 
