@@ -16,15 +16,17 @@ namespace {
 /// The checked values of each option in a line.
 using Lists = std::map<std::string, std::vector<std::string>>;
 
-const Parameter& known_option(const FilterKind& filter, const std::string& key,
-                              const std::string& place) {
+/// The options of a filter, then those of every filter.
+std::vector<Parameter> all_options(const FilterKind& filter) {
+  std::vector<Parameter> all = filter.options;
+  all.insert(all.end(), mismatch_options().begin(), mismatch_options().end());
+  return all;
+}
+
+Parameter known_option(const FilterKind& filter, const std::string& key, const std::string& place) {
   std::vector<std::string> known{"label"};
-  for (const Parameter& option : filter.options) {
-    if (option.key == key) return option;
-    known.push_back(option.key);
-  }
-  for (const Parameter& option : mismatch_options()) {
-    if (option.key == key) return option;
+  for (Parameter& option : all_options(filter)) {
+    if (option.key == key) return std::move(option);
     known.push_back(option.key);
   }
   throw StudyError(place + ": " + filter.name + " has no option '" + key +
@@ -58,7 +60,7 @@ void take_word(const std::string& word, const FilterKind& filter, CellSpec& cell
     cell.label = checked_label(word.substr(equals + 1), cell.place);
     return;
   }
-  const Parameter& option = known_option(filter, key, cell.place);
+  const Parameter option = known_option(filter, key, cell.place);
   const std::string given = word.substr(equals + 1);
   const bool is_list = option.kind != Parameter::Kind::text;  // a text may hold commas
   for (const std::string& value : is_list ? split(given, ',') : std::vector{given}) {
@@ -66,17 +68,13 @@ void take_word(const std::string& word, const FilterKind& filter, CellSpec& cell
   }
 }
 
-using Options = std::vector<std::pair<std::string, std::string>>;
-
-/// Replaces every cell by one copy for each of `values` of an option, which is added to a list.
+/// Replaces every cell by one copy for each of `values` of an option.
 void multiply(const std::string& key, const std::vector<std::string>& values,
-              Options CellSpec::*list, std::vector<CellSpec>& cells) {
+              std::vector<CellSpec>& cells) {
   std::vector<CellSpec> longer;
   for (const CellSpec& cell : cells) {
-    for (const std::string& value : values) {
-      longer.push_back(cell);
-      (longer.back().*list).emplace_back(key, value);
-    }
+    for (const std::string& value : values)
+      longer.emplace_back(cell).options.emplace_back(key, value);
   }
   cells = std::move(longer);
 }
@@ -92,12 +90,14 @@ std::vector<CellSpec> combinations(const CellSpec& line, const Lists& lists,
     const auto& fallback = has_own ? option.fallback_if_measured : option.fallback;
     return std::vector{checked_value(option, fallback.value_or(""), line.place)};
   };
-  for (const Parameter& option : line.filter->options)
-    multiply(option.key, values_of(option), &CellSpec::options, cells);
-  for (const Parameter& option : mismatch_options())
-    multiply(option.key, values_of(option), &CellSpec::mismatch, cells);
-  for (CellSpec& cell : cells)
-    std::erase_if(cell.mismatch, [](const auto& factor) { return factor.second == "1"; });
+  for (const Parameter& option : all_options(*line.filter))
+    multiply(option.key, values_of(option), cells);
+  for (CellSpec& cell : cells) {
+    const auto own = static_cast<std::ptrdiff_t>(line.filter->options.size());
+    const auto rest = std::remove_if(cell.options.begin() + own, cell.options.end(),
+                                     [](const auto& factor) { return factor.second == "1"; });
+    cell.options.erase(rest, cell.options.end());
+  }
   return cells;
 }
 
@@ -158,15 +158,13 @@ void describe(const std::vector<CellSpec>& cells, const CellSpec& cell, std::str
   label = cell.filter->name;
   for (std::size_t i = 0; i < cell.options.size(); ++i) {
     const auto& [key, value] = cell.options[i];
-    const bool particles = key == "particles";
-    if (!particles && !distinguishes(cells, cell, i)) continue;
+    const bool is_mismatch = i >= cell.filter->options.size(), particles = key == "particles";
+    if (!is_mismatch && !particles && !distinguishes(cells, cell, i)) continue;
     label += particles ? "_m" + value : "_" + key + "_" + label_part(value);
     distinction +=
-        (distinction.empty() ? "" : ", ") + (particles ? value + " particles" : key + " " + value);
-  }
-  for (const auto& [key, factor] : cell.mismatch) {
-    label += "_" + key + "_" + label_part(factor);
-    distinction += (distinction.empty() ? "" : ", ") + ("believes " + key + " x " + factor);
+        (distinction.empty() ? "" : ", ") + (is_mismatch ? "believes " + key + " x " + value
+                                             : particles ? value + " particles"
+                                                         : key + " " + value);
   }
 }
 
@@ -257,11 +255,10 @@ std::string cell_line(const CellSpec& cell) {
   std::string line = cell.filter->name + " label=" + cell.label;
   for (std::size_t i = 0; i < cell.options.size(); ++i) {
     const auto& [key, value] = cell.options[i];
-    const Parameter& option = cell.filter->options[i];
-    const bool is_text = option.kind == Parameter::Kind::text;
+    const std::vector<Parameter>& own = cell.filter->options;
+    const bool is_text = i < own.size() && own[i].kind == Parameter::Kind::text;
     line += " " + key + "=" + (is_text ? in_quotes(value) : value);
   }
-  for (const auto& [key, value] : cell.mismatch) line += " " + key + "=" + value;
   return line;
 }
 
@@ -285,9 +282,10 @@ std::span<const Parameter> mismatch_options() {
 }
 
 double mismatch_of(const CellSpec& cell, std::string_view name) {
-  const auto found =
-      std::ranges::find_if(cell.mismatch, [&](const auto& factor) { return factor.first == name; });
-  return found == cell.mismatch.end() ? 1.0 : to_number(found->second).value();
+  for (const auto& [key, value] : cell.options) {
+    if (key == name) return to_number(value).value();
+  }
+  return 1.0;
 }
 
 }  // namespace montecarta::experiments

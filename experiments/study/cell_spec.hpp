@@ -16,10 +16,9 @@ namespace montecarta::experiments {
 struct CellSpec {
   std::string label;  ///< unique in the study; letters, digits and _
   const FilterKind* filter = nullptr;
-  /// All options, in the filter's order and in canonical spelling.
+  /// All options of the filter, in its order and in canonical spelling, then the factors of
+  /// mismatch_options() that are not 1.
   std::vector<std::pair<std::string, std::string>> options;
-  /// Factors of mismatch_options() that are not 1.
-  std::vector<std::pair<std::string, std::string>> mismatch = {};
   std::string distinction;  ///< from other cells of its filter, for legends: "100 particles"
   std::string place;        ///< "file:line"
 };

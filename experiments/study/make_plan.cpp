@@ -117,15 +117,13 @@ Capabilities capabilities_of(const FilterKind& filter, const FilterSetup& setup)
 Cell cell_of(const CellSpec& spec, const Study& study, ExternalPrograms programs) {
   const FilterSetup setup = setup_of(spec, study);
   const FilterKind& filter = *spec.filter;
-  auto options = spec.options;
-  options.insert(options.end(), spec.mismatch.begin(), spec.mismatch.end());
   return {.label = spec.label,
           .filter = filter.name,
           .long_name = filter.long_name + (spec.distinction.empty() ? "" : ", " + spec.distinction),
           .particles = particles_of(spec),
           .reports = capabilities_of(filter, setup),
           .landmarks = map_rows_of(setup, study.settings),
-          .settings = std::move(options),
+          .settings = spec.options,
           .make_filter = maker_of(spec, setup, programs)};
 }
 
