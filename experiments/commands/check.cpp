@@ -8,13 +8,13 @@
 #include "engine/records/posix_file.hpp"
 #include "engine/records/result_description.hpp"
 #include "engine/records/run_record.hpp"
+#include "engine/runs/progress.hpp"
 #include "engine/wrapped_text.hpp"
 #include "experiments/commands/arguments.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <fstream>
 #include <iostream>
 #include <limits>
@@ -114,14 +114,12 @@ double bytes_at_end(const Cell& cell, const Itinerary& itinerary, const Drive& d
 }  // namespace
 
 std::optional<Trial> trial_of(const Cell& cell, const StudyPlan& plan, const Drive& drive) {
-  using Clock = std::chrono::steady_clock;
   const Itinerary& itinerary = plan.drives->itinerary_of(plan.first_run);
   const std::size_t steps = itinerary.steps();
   const WithinFreeMemory limit;
   ::malloc_trim(0);  // memory left by an earlier trial would hide that of this one
   const double before = resident_bytes();
-  Clock::time_point begin;
-  const auto passed = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
+  Stopwatch stopwatch;
   double first = 0.0, all = 0.0;
   Held half, end;
   std::size_t k = 0;
@@ -132,11 +130,11 @@ std::optional<Trial> trial_of(const Cell& cell, const StudyPlan& plan, const Dri
     filter->start(itinerary.start);
     step_through(*filter, plan, drive, 0, scan);
     scan = 0;
-    begin = Clock::now();
+    stopwatch = Stopwatch();
     filter->start(itinerary.start);
     for (; k < steps && all < kTrialSeconds; ++k) {
       step_through(*filter, plan, drive, k, scan);
-      all = passed();
+      all = stopwatch.seconds();
       if (k == 0) first = all;
       if (half.steps == 0 && scan > 0 && 2.0 * all > kTrialSeconds) {
         half = {k + 1, resident_bytes() - before};

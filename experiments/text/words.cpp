@@ -8,6 +8,8 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <iomanip>
+#include <sstream>
 #include <system_error>
 
 namespace montecarta::experiments {
@@ -161,12 +163,9 @@ std::vector<std::string> quoted_words(std::string_view text) {
 }
 
 std::string in_quotes(std::string_view word) {
-  std::string quoted = "\"";
-  for (const char c : word) {
-    if (c == '"' || c == '\\') quoted += '\\';
-    quoted += c;
-  }
-  return quoted + '"';
+  std::ostringstream quoted;
+  quoted << std::quoted(word);
+  return quoted.str();
 }
 
 }  // namespace montecarta::experiments
