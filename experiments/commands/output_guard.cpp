@@ -12,11 +12,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_same_file(const fs::path& a, const fs::path& b) {
-  std::error_code ignored;
-  return fs::equivalent(a, b, ignored);
-}
-
 /// Why no result may replace `path`, e.g. "is a folder"; empty if it may be written.
 std::string obstacle_at(const fs::path& path) {
   std::error_code ignored;
@@ -37,9 +32,10 @@ std::string obstacle_at(const fs::path& path) {
 }  // namespace
 
 void refuse_input_as_output(const fs::path& output, const std::vector<std::string>& inputs) {
+  std::error_code ignored;
   for (const std::string& input : inputs) {
     for (const std::string& name : {input, input + ".part"}) {
-      if (!is_same_file(output, name)) continue;
+      if (!fs::equivalent(output, name, ignored)) continue;
       throw StudyError(output.string() + ": is the same file as " + name +
                        " (the input would be overwritten, even with --force): choose another name");
     }

@@ -9,65 +9,60 @@
 
 #include <algorithm>
 #include <iostream>
-#include <optional>
 
 namespace montecarta::experiments {
 namespace {
 
 /// The state of every run of a study in each cell, collected from many files.
-class StudyStatus {
- public:
-  explicit StudyStatus(const ResultFile& first) : sha256_(first.study_sha256()) {
-    for (const StoredCell& cell : first.cells()) {
-      labels_.push_back(cell.label);
-      status_.emplace_back(first.study_runs(), RunStatus::missing);
-    }
-  }
-
-  void add(const ResultFile& file) {
-    if (file.study_sha256() != sha256_) {
-      throw StudyError(file.path().string() +
-                       ": holds another study (its SHA-256 differs from that of the first file): "
-                       "ask for each study by itself");
-    }
-    for (std::size_t c = 0; c < labels_.size(); ++c) {
-      if (file.has_sums()) {
-        add_groups(file.sum_groups(file.cells().at(c)), status_[c]);
-        continue;
-      }
-      const std::vector<RunStatus> here = file.status(file.cells().at(c));
-      for (std::size_t i = 0; i < here.size(); ++i) {
-        if (here[i] != RunStatus::missing) status_[c].at(file.runs()[i]) = here[i];
-      }
-    }
-  }
-
-  void print() const {
-    std::vector<TableRow> rows{{"cell", "complete", "failed", "missing", "all", "spared"}};
-    for (std::size_t c = 0; c < labels_.size(); ++c) {
-      const RunCounts counts = count_status(status_[c]);
-      rows.push_back({labels_[c], std::to_string(counts.complete), std::to_string(counts.failed),
-                      std::to_string(counts.missing), std::to_string(status_[c].size()),
-                      std::to_string(counts.spared)});
-    }
-    std::cout << aligned(without_idle_spared(std::move(rows)), 0);
-  }
-
- private:
-  /// It does not matter here which runs of a group failed.
-  static void add_groups(const std::vector<SumGroup>& groups, std::vector<RunStatus>& status) {
-    for (const SumGroup& group : groups) {
-      const auto first = status.begin() + static_cast<std::ptrdiff_t>(group.first_run);
-      std::fill_n(first, group.complete, RunStatus::complete);
-      std::fill_n(first + static_cast<std::ptrdiff_t>(group.complete), group.failed,
-                  RunStatus::failed);
-    }
-  }
-
-  std::string sha256_;
-  std::vector<std::string> labels_;
-  std::vector<std::vector<RunStatus>> status_;
+struct StudyStatus {
+  std::string sha256;
+  std::vector<std::string> labels;
+  std::vector<std::vector<RunStatus>> runs;  ///< {cell}{run of the study}
 };
+
+/// It does not matter here which runs of a group failed.
+void add_groups(const std::vector<SumGroup>& groups, std::vector<RunStatus>& status) {
+  for (const SumGroup& group : groups) {
+    const auto first = status.begin() + static_cast<std::ptrdiff_t>(group.first_run);
+    std::fill_n(first, group.complete, RunStatus::complete);
+    std::fill_n(first + static_cast<std::ptrdiff_t>(group.complete), group.failed,
+                RunStatus::failed);
+  }
+}
+
+void add(const ResultFile& file, StudyStatus& study) {
+  if (study.sha256.empty()) {
+    study.sha256 = file.study_sha256();
+    for (const StoredCell& cell : file.cells()) study.labels.push_back(cell.label);
+    study.runs.assign(file.cells().size(), std::vector(file.study_runs(), RunStatus::missing));
+  } else if (file.study_sha256() != study.sha256) {
+    throw StudyError(file.path().string() +
+                     ": holds another study (its SHA-256 differs from that of the first file): "
+                     "ask for each study by itself");
+  }
+  for (std::size_t c = 0; c < study.labels.size(); ++c) {
+    const StoredCell& cell = file.cells().at(c);
+    if (file.has_sums()) {
+      add_groups(file.sum_groups(cell), study.runs[c]);
+      continue;
+    }
+    const std::vector<RunStatus> here = file.status(cell);
+    for (std::size_t i = 0; i < here.size(); ++i) {
+      if (here[i] != RunStatus::missing) study.runs[c].at(file.runs()[i]) = here[i];
+    }
+  }
+}
+
+void print(const StudyStatus& study) {
+  std::vector<TableRow> rows{{"cell", "complete", "failed", "missing", "all", "spared"}};
+  for (std::size_t c = 0; c < study.labels.size(); ++c) {
+    const RunCounts counts = count_status(study.runs[c]);
+    rows.push_back({study.labels[c], std::to_string(counts.complete), std::to_string(counts.failed),
+                    std::to_string(counts.missing), std::to_string(study.runs[c].size()),
+                    std::to_string(counts.spared)});
+  }
+  std::cout << aligned(without_idle_spared(std::move(rows)), 0);
+}
 
 /// The depth of the check of a file.
 enum class Depth { statuses, every_byte };
@@ -125,13 +120,9 @@ int status_command(const Arguments& arguments) {
     for (const std::string& name : arguments.operands()) std::cout << status_line(name, depth);
     return kDone;
   }
-  std::optional<StudyStatus> status;
-  for (const std::string& name : arguments.operands()) {
-    const ResultFile file = open_stored(name);
-    if (!status) status.emplace(file);
-    status->add(file);
-  }
-  status->print();
+  StudyStatus study;
+  for (const std::string& name : arguments.operands()) add(open_stored(name), study);
+  print(study);
   return kDone;
 }
 
