@@ -231,7 +231,7 @@ TEST_P(SlowSamplerLevel, IsAtMostFivePercent) {
                                             : sampler.draws == 30 ? 1.0
                                                                   : 0.0);
   if (!is_sample && !is_table_wanted()) GTEST_SKIP() << kHowToGetTheTable;
-  const std::uint64_t studies = studies_of_a_line(1000);
+  const std::uint64_t studies = studies_of_a_line(400);
   const double found = share_rejected(sampler, studies);
   EXPECT_LT(found, 0.05 + share_errors(0.05, studies));
   RecordProperty("rejected", std::to_string(found));
