@@ -11,8 +11,8 @@
 #include <cmath>
 #include <vector>
 
-/// Kalman filters with full matrices at every step and known association, as their papers have them
-/// and as slow.
+/// Kalman filters with full matrices at every step and known association, as their papers have
+/// them.
 namespace montecarta::filters::reference {
 
 /// A B and A P A' of full matrices; every size alike, which spares the compiler most of its work.
@@ -56,12 +56,10 @@ class FullGaussian {
   /// The pose of three rows moves to `there`.
   void move(Eigen::Index row, const Pose& there, const Eigen::Matrix3d& by_pose,
             const Eigen::Matrix<double, 3, 2>& by_control) {
-    Eigen::MatrixXd F = Eigen::MatrixXd::Identity(mean.size(), mean.size());
-    F.block<3, 3>(row, row) = by_pose;
-    Eigen::MatrixXd G = Eigen::MatrixXd::Zero(mean.size(), 2);
-    G.middleRows<3>(row) = by_control;
     mean.segment<3>(row) << there.x, there.y, there.heading;
-    covariance = sandwich(F, covariance) + sandwich(G, Q().asDiagonal());
+    covariance.middleRows<3>(row) = product(by_pose, covariance.middleRows<3>(row));
+    covariance.middleCols<3>(row) = product(covariance.middleCols<3>(row), by_pose.transpose());
+    covariance.block<3, 3>(row, row) += sandwich(by_control, Q().asDiagonal());
   }
   /// Calls `see(detection, row)` for landmarks in the map, then append(detection, place) for the
   /// others.
@@ -88,9 +86,8 @@ class FullGaussian {
     const Eigen::Matrix2d per_S = S.ldlt().solve(Eigen::Matrix2d::Identity());
     const Eigen::MatrixXd K = product(product(covariance, H.transpose()), per_S);
     mean += product(K, to_vector(innovation));
-    const Eigen::MatrixXd I_KH =
-        Eigen::MatrixXd::Identity(mean.size(), mean.size()) - product(K, H);
-    covariance = sandwich(I_KH, covariance) + sandwich(K, R());
+    const Eigen::MatrixXd left = covariance - product(K, product(H, covariance));  // (I - K H) P
+    covariance = left - product(product(left, H.transpose()), K.transpose()) + sandwich(K, R());
   }
   /// A landmark placed from the first three rows, with that derivative by them.
   void append(const Detection& detection, const LinearisedPlace<double>& placed,
