@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/statistics/nees_bounds.hpp"
 #include "filters/joint/joint_filter.hpp"
 #include "filters/models/eigen_jacobians.hpp"
 #include "filters/moments/gaussians.hpp"
@@ -16,68 +15,6 @@
 
 namespace montecarta::filters {
 namespace {
-
-double nees(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance) {
-  return error.dot(covariance.llt().solve(error));
-}
-
-/// One vehicle in a linear world and the Kalman filter that knows the world's matrices.
-class LinearRun {
- public:
-  explicit LinearRun(std::uint64_t run) : draw_({.seed = 2310, .run = run, .purpose = Draw::test}) {
-    F_ << 0.8, 0.1, 0.0, -0.1, 0.7, 0.2, 0.0, 0.1, 0.6;
-    G_ << 1.0, 0.0, 0.3, 0.5, 0.0, 0.8;  // two noises drive three states, as in a vehicle
-    H_ << 1.0, 0.0, 0.5, 0.0, 1.0, -0.4;
-  }
-
-  /// One step, one measurement; returns the NEES after it.
-  double advance() {
-    const Eigen::Vector2d process(draw_.normal(), draw_.normal());
-    truth_ = (F_ * truth_ + G_ * process).eval();
-    P_ = (F_ * P_ * F_.transpose() + G_ * G_.transpose()).eval();
-    mean_ = (F_ * mean_).eval();
-    const Eigen::Vector2d sensor(draw_.normal(), draw_.normal());
-    const Eigen::Vector2d innovation = H_ * (truth_ - mean_) + sensor;
-    const Eigen::Matrix2d S = H_ * P_ * H_.transpose() + Eigen::Matrix2d::Identity();
-    const Matrix32 K = S.llt().solve(H_ * P_).transpose();
-    mean_ += K * innovation;
-    P_ -= (K * S * K.transpose()).eval();
-    return nees(truth_ - mean_, P_);
-  }
-
- private:
-  RngStream draw_;
-  Eigen::Matrix3d F_;
-  Matrix32 G_;
-  Matrix23 H_;
-  Eigen::Vector3d truth_ = Eigen::Vector3d::Zero();
-  Eigen::Vector3d mean_ = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d P_ = Eigen::Matrix3d::Zero();
-};
-
-TEST(Consistency, AMatchedLinearWorldStaysInsideItsBand) {
-  constexpr std::uint64_t kRuns = 30;
-  constexpr int kSteps = 4000;
-  std::vector<LinearRun> runs;
-  for (std::uint64_t run = 0; run < kRuns; ++run) runs.emplace_back(run);
-  for (LinearRun& run : runs) {
-    run.advance(), run.advance();  // two noises need two steps to fill three dimensions
-  }
-  const analysis::Interval band = analysis::nees_bounds(kRuns, 3, 0.95);
-  int inside = 0;
-  double total = 0.0;
-  for (int step = 0; step < kSteps; ++step) {
-    double sum = 0.0;
-    for (LinearRun& run : runs) sum += run.advance();
-    const double anees = sum / static_cast<double>(kRuns);
-    inside += anees >= band.lower && anees <= band.upper;
-    total += anees;
-  }
-  // 120,000 chi-squares, neighbours correlated by 0.8 or less: standard error below 0.02.
-  EXPECT_NEAR(total / kSteps, 3.0, 0.1);
-  EXPECT_GE(inside, 0.94 * kSteps);
-  EXPECT_LE(inside, 0.96 * kSteps);
-}
 
 TEST(Consistency, EkfSlamIsConsistentWhereNoiseIsSmall) {
   constexpr std::uint64_t kRuns = 200;

@@ -25,23 +25,14 @@ Variant with(Variant variant, const char* option, const char* value) {
 
 class DeSrcd : public testing::TestWithParam<Variant> {};
 
-TEST_P(DeSrcd, LanesEqualOneParticleAtATime) {
-  const SmallWorldSettings settings;
-  const auto lanes = make_production(GetParam(), settings);
-  const auto single = make_de_srcd<double>(setup_of(GetParam(), settings));
-  expect_same_run(*lanes, *single, small_world(settings), 1e-9);
-}
-
 TEST_P(DeSrcd, EqualsThePlainFilter) {
   std::size_t accepted = 0;
   for (const std::uint64_t seed : {1, 2, 3, 4}) {
     const SmallWorldSettings settings{.seed = seed};
     const SmallWorld world = small_world(settings);
     const auto lanes = make_production(GetParam(), settings);
-    const auto single = make_de_srcd<double>(setup_of(GetParam(), settings));
     const auto plain = make_plain(GetParam(), settings);
     expect_same_run(*lanes, *plain, world, 1e-9);
-    expect_same_run(*single, *plain, world, 1e-9);
     // Evolution asks which of two places is fitter. Where rounding decides that, two makes part
     // for good; it does so in none of these runs.
     const auto& evolution = dynamic_cast<const plain::DeSrcd&>(*plain).evolution();

@@ -7,24 +7,7 @@
 namespace montecarta::filters {
 namespace {
 
-/// The filter with one particle at a time instead of eight.
-std::unique_ptr<SlamFilter> make_single(const Variant& v, const SmallWorldSettings& world) {
-  const FilterSetup setup = setup_of(v, world);
-  if (v.filter == "fastslam1") return make_fastslam1<double>(setup);
-  if (v.filter == "fastslam2") return make_fastslam2<double>(setup);
-  if (v.filter == "ufastslam") return make_ufastslam<double>(setup);
-  if (v.filter == "srcd_aided") return make_srcd_aided<double>(setup);
-  return v.filter == "srcd" ? make_srcd<double>(setup) : make_srcd_pf<double>(setup);
-}
-
 class FastSlams : public testing::TestWithParam<Variant> {};
-
-TEST_P(FastSlams, LanesEqualOneParticleAtATime) {
-  const SmallWorldSettings settings;
-  const auto lanes = make_production(GetParam(), settings);
-  const auto single = make_single(GetParam(), settings);
-  expect_same_run(*lanes, *single, small_world(settings), 1e-10);
-}
 
 TEST_P(FastSlams, EqualsThePlainFilter) {
   const SmallWorldSettings settings;

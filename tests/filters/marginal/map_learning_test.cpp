@@ -66,17 +66,6 @@ TEST(MapLearning, GaussNewtonAndEvolutionFindTheSamePlace) {
   }
 }
 
-TEST(MapLearning, LanesEqualOneParticleAtATime) {
-  const Cloud<Lanes> lanes(0.05);
-  const Cloud<double> single(0.05);
-  for (const MapSolver solver : {MapSolver::gauss_newton, MapSolver::de}) {
-    const SharedLandmark a = lanes.learnt({.solver = solver}, kBefore);
-    const SharedLandmark b = single.learnt({.solver = solver}, kBefore);
-    EXPECT_LT(distance(a.mean, b.mean), 1e-9);
-    EXPECT_NEAR(a.information.xy, b.information.xy, 1e-8);
-  }
-}
-
 // From one exact pose the recursive map is the information filter: it averages.
 TEST(MapLearning, RecursiveMapsAverageWhatTheySaw) {
   SharedLandmark landmark = kBefore;

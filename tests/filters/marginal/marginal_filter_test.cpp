@@ -102,19 +102,6 @@ void expect_same(const Cloud& a, const Cloud& b, double tolerance) {
 
 class Marginals : public testing::TestWithParam<Variant> {};
 
-TEST_P(Marginals, LanesEqualOneParticleAtATime) {
-  const SmallWorldSettings settings;
-  const SmallWorld world = small_world(settings);
-  const auto lanes = make<Lanes>(GetParam(), settings);
-  const auto single = make<double>(GetParam(), settings);
-  std::vector<Cloud> clouds;
-  drive_through(*lanes, world, Pose(),
-                [&](std::size_t) { clouds.emplace_back(*lanes, 13, settings.landmarks); });
-  drive_through(*single, world, Pose(), [&](std::size_t scan) {
-    expect_same(clouds[scan], Cloud(*single, 13, settings.landmarks), 1e-12);
-  });
-}
-
 TEST_P(Marginals, FollowTheTruth) {
   const SmallWorldSettings settings;
   const SmallWorld world = small_world(settings);

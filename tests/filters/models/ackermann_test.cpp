@@ -122,12 +122,6 @@ TEST(DifferentialDrive, DrivesACircle) {
   EXPECT_NEAR(step.turn, kPi / 2, 1e-15);
 }
 
-TEST(DifferentialDrive, DrivesAWholeCircleBackToWhereItWas) {
-  const BodyStep<double> step = body_step(kArc, Control{2.0, 0.5}, 4 * kPi);
-  EXPECT_NEAR(step.forward, 0.0, 1e-14);
-  EXPECT_NEAR(step.left, 0.0, 1e-14);
-}
-
 TEST(DifferentialDrive, TurnsOnTheSpot) {
   for (const DifferentialDrive& vehicle : {kArc, kEuler}) {
     const Pose there = move(Pose{1.0, 2.0, 3.0}, Control{0.0, 1.5}, 0.2, vehicle);

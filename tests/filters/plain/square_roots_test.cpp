@@ -122,27 +122,6 @@ Vector<2> bent(const Vector<3>& x) {
   return {std::sqrt(4.0 + x.squaredNorm()), std::atan2(x(1), 3.0 + x(0)) - x(2)};
 }
 
-TEST(CentralDifferences, NoiseAsPointsIsNoiseAdded) {
-  RngStream draw({.seed = 233, .purpose = Draw::test});
-  for (int n = 0; n < 200; ++n) {
-    const Eigen::Matrix3d S = 0.3 * random_matrix<3, 3>(draw);
-    const Eigen::Matrix2d R = 0.3 * random_matrix<2, 2>(draw);
-    const Vector<3> x = random_matrix<3, 1>(draw);
-    const auto added = central_differences<2, -1>(x, S, kInterval, bent);
-    Vector<5> both = Vector<5>::Zero();
-    both.head<3>() = x;
-    Eigen::Matrix<double, 5, 5> root = Eigen::Matrix<double, 5, 5>::Zero();
-    root.topLeftCorner<3, 3>() = S, root.bottomRightCorner<2, 2>() = R;
-    const auto augmented = central_differences<2, -1>(
-        both, root, kInterval,
-        [](const Vector<5>& v) -> Vector<2> { return bent(v.head<3>()) + v.tail<2>(); });
-    const auto square = [](const auto& A) -> Eigen::Matrix2d { return A * A.transpose(); };
-    const Eigen::Matrix2d P = square(added.A) + square(added.B) + square(R);
-    EXPECT_LT((augmented.mean - added.mean).norm(), 2e-15 * (1 + added.mean.norm()));
-    EXPECT_LT((square(augmented.A) + square(augmented.B) - P).norm(), 4e-15 * (1 + P.norm()));
-  }
-}
-
 /// S S' -> S S' - U U', one hyperbolic downdate per column of U; false if that is not positive.
 template <int N, int M>
 [[nodiscard]] bool cholupdate(Matrix<N>& S, const Matrix<N, M>& U) {
