@@ -218,14 +218,6 @@ TEST_F(Rounds, ChangeNoRunThatIsMade) {
   for (std::size_t run = 0; run < 64; ++run) EXPECT_EQ(difference_of_run(all, run, some, run), "");
 }
 
-TEST_F(Rounds, GiveTheSameBitsOnAnyThreads) {
-  const ResultFile serial = results_of(stopping_plan(), options("serial.h5"));
-  for (const int threads : {2, 8}) {
-    const ResultFile other = results_of(stopping_plan(), options(std::to_string(threads), threads));
-    EXPECT_EQ(difference(serial, other), "") << threads << " threads";
-  }
-}
-
 /// Raises a signal, or fails, when the cell is asked about for the first time.
 StudyPlan disturbed_plan(std::size_t at_cell, std::uint64_t at_runs, int signal) {
   StudyPlan plan = stopping_plan();

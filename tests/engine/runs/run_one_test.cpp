@@ -48,37 +48,12 @@ TEST(RunOne, RecordsEveryStepOfACompleteRun) {
   EXPECT_GE(bench.record.cpu_seconds(), 0.0);
 }
 
-TEST(RunOne, DependsOnNothingThatRanBefore) {
-  const ScriptedFilter::Script fails_in_run_5{.mishap = Mishap{.run = 5}};
-  Bench after(fails_in_run_5);
-  for (const std::uint64_t run : {4, 5, 3}) {
-    Bench alone(fails_in_run_5);
-    ASSERT_EQ(alone.run(run), RunEnd::recorded);
-    ASSERT_EQ(after.run(run), RunEnd::recorded);
-    EXPECT_EQ(alone.record.fingerprint(), after.record.fingerprint()) << "run " << run;
-  }
-}
-
 TEST(RunOne, GivesEachRunItsOwnNumbers) {
   Bench bench({});
   ASSERT_EQ(bench.run(0), RunEnd::recorded);
   const std::uint64_t first = bench.record.fingerprint();
   ASSERT_EQ(bench.run(1), RunEnd::recorded);
   EXPECT_NE(bench.record.fingerprint(), first);
-}
-
-/// A law: loops inside the filter give the same bits on spare threads.
-TEST(RunOne, GivesTheSameBitsOnSpareThreads) {
-  const ScriptedFilter::Script large{.particles = 2 * SpareThreads::kLeastParticles};
-  Bench serial(large);
-  ASSERT_EQ(serial.run(2), RunEnd::recorded);
-  for (const Backend backend : {Backend::tbb, Backend::openmp})
-    for (const int threads : {2, 8}) {
-      const Parallel parallel(backend, threads);
-      Bench spread(large, {.particles = true, .map = true}, parallel);
-      ASSERT_EQ(spread.run(2), RunEnd::recorded);
-      EXPECT_EQ(spread.record.fingerprint(), serial.record.fingerprint()) << threads << " threads";
-    }
 }
 
 void expect_failed_at_17(Mishap::Kind kind, std::string_view reason) {
