@@ -38,7 +38,8 @@ class SlowSummedStudy : public BlinkProgram {
   /// Thousands of runs take a second.
   static std::string study() {
     return "[study]\nname = blink\nruns = " + std::to_string(kSummedRuns) +
-           "\n[scenario]\nworld = blink.csv\n[cells]\ncell = ekf_slam\n"
+           "\n[scenario]\nworld = blink.csv\ncontrol_rate = 10\nscan_rate = 2.5\n[cells]\n"
+           "cell = ekf_slam\n"
            "cell = fastslam2 particles=10\n[record]\ncolumns = sums\nrate = scan\n";
   }
   Called run(const std::string& out, const std::vector<std::string>& more = {}) const {

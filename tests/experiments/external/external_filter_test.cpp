@@ -132,8 +132,9 @@ TEST_F(External, ADeadProgramIsReportedWithItsLastWordsAndADeafOneIsNotDead) {
   EXPECT_EQ(first_failure("kill 2").reason, "program was killed by signal 9 (Killed)");
   EXPECT_EQ(first_failure("close 2").reason, "program closed its standard input or output");
   EXPECT_EQ(first_failure("exit 0").step, 0U);
-  EXPECT_EQ(first_failure("deaf 2").reason, "program closed its standard input or output");
-  EXPECT_EQ(first_failure("deaf 2").step, 5U);
+  const Failure deaf = first_failure("deaf 2");
+  EXPECT_EQ(deaf.reason, "program closed its standard input or output");
+  EXPECT_EQ(deaf.step, 5U);
 }
 
 TEST_F(External, AfterAFailureTheNextRunHasANewProcess) {
