@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/metrics/mismatch.hpp"
 #include "analysis/metrics/nees.hpp"
 #include "analysis/metrics/score.hpp"
 #include "analysis/output/frame.hpp"
@@ -83,7 +82,6 @@ struct CellAnalysis {
   std::string filter;
   std::string long_name;
   std::size_t particles = 0;  ///< 0: not a particle filter
-  Mismatch mismatch;          ///< factors of the noise that it believes
   std::size_t complete = 0;
   std::size_t missing = 0;
   std::size_t spared = 0;         ///< not made: the cell was precise enough, or its verdict known

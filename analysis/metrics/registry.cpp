@@ -33,7 +33,6 @@ namespace montecarta::analysis {
   METRIC(innovations)              \
   METRIC(diversity)                \
   METRIC(calibration)              \
-  METRIC(mismatch)                 \
   METRIC(cost)                     \
   METRIC(convention_hints)         \
   METRIC(smoother)                 \

@@ -90,7 +90,6 @@ struct CellTask {
     cell.filter = stored.filter;
     cell.long_name = stored.long_name;
     cell.particles = stored.particles;
-    cell.mismatch = mismatch_of(stored);
     if (!file.has_sums()) complete = complete_runs(file, stored, runs, cell);
   }
 

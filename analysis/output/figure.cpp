@@ -146,19 +146,6 @@ std::size_t line_dashes(std::size_t i) {
   return i == kReferenceStyle ? 2 : 1 + i / kColours.size();
 }
 
-std::string colour_within(std::span<const Colour> palette, double share) {
-  const double place = share * static_cast<double>(palette.size() - 1);
-  const auto low = std::min(static_cast<std::size_t>(place), palette.size() - 2);
-  Colour colour{};
-  for (std::size_t c = 0; c < colour.size(); ++c) {
-    colour[c] = static_cast<int>(std::lround(
-        std::lerp(palette[low][c], palette[low + 1][c], place - static_cast<double>(low))));
-  }
-  char text[8];
-  std::snprintf(text, sizeof text, "#%02x%02x%02x", colour[0], colour[1], colour[2]);
-  return text;
-}
-
 Frame thin(const Frame& frame, std::size_t buckets) {
   const std::vector<double>& times = frame.columns.front().numbers;
   if (times.size() <= 2 * buckets) return frame;

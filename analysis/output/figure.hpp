@@ -27,13 +27,6 @@ std::string line_colour(std::size_t i);
 /// another pattern.
 std::size_t line_dashes(std::size_t i);
 
-/// Red, green and blue, from 0 to 255.
-using Colour = std::array<int, 3>;
-
-/// The colour of a palette at `share` of its length, from 0 to 1, as "#0072b2"; linear between its
-/// colours, of which there are two at least.
-std::string colour_within(std::span<const Colour> palette, double share);
-
 /// A horizontal band, e.g. of a consistent filter. It limits the vertical axis to the range from
 /// 0.3 times its lower end to 100 000 times its upper one, so that it stays visible beside a filter
 /// that is off by many powers of ten.
@@ -53,7 +46,7 @@ struct ChartAxis {
 /// Marks at coordinates of their own rather than at the panel's common x. The page shows the facts
 /// of the mark nearest to the pointer.
 struct ChartMarks {
-  enum class Shape { line, points, crosses, ellipses, boxes };
+  enum class Shape { line, points, crosses, ellipses };
   /// One value for each place.
   struct Fact {
     std::string label;  ///< with unit
@@ -65,10 +58,8 @@ struct ChartMarks {
   Shape shape = Shape::line;
   double thickness = 0.0;             ///< [px] of lines and points; 0: the usual
   std::vector<double> x, y;           ///< NaN: a gap in a line
-  std::vector<double> width, height;  ///< of ellipses (diameters) and boxes
+  std::vector<double> width, height;  ///< of ellipses: their diameters
   std::vector<double> angle;          ///< [deg] of ellipses
-  std::vector<std::string> fill;      ///< colour of each box
-  std::vector<std::string> text;      ///< within each box; empty: none
   std::vector<Fact> facts;            ///< empty: the page shows none
 };
 
@@ -105,7 +96,6 @@ struct ChartPanel {
   std::vector<Band> bands;
   std::string cell = {};  ///< a panel of one cell: hidden with it
   std::vector<ChartMarks> marks = {};
-  std::vector<std::string> x_names = {}, y_names = {};  ///< at 0, 1, 2, ..., in place of numbers
   /// The columns of a figure without curves. Column k begins at x[k] and ends where the next one
   /// begins, the last one at Chart::x_to.
   ChartStrips strips = {};

@@ -183,8 +183,6 @@ std::string mark_style(const ChartMarks& marks) {
       return points("1", 0.6);
     case Shape::ellipses:
       return points("6", 1.2);
-    case Shape::boxes:
-      return points("5", 1.2);
   }
   return "";
 }
@@ -220,7 +218,6 @@ class PanelWriter {
   void add(const ChartMarks& marks) {
     if (marks.x.empty()) return;  // an empty data block is an error to gnuplot
     if (marks.shape == Shape::ellipses) return add_ellipses(marks);
-    if (marks.shape == Shape::boxes) return add_boxes(marks);
     plot({&marks.x, &marks.y}, "1:2", mark_style(marks));
   }
 
@@ -248,13 +245,10 @@ class PanelWriter {
          "ellipses fillstyle empty border " + line_style(marks.style));
   }
 
-  void add_boxes(const ChartMarks& marks) {
-    const std::string corners = "1:2:($1-$3/2):($1+$3/2):($2-$4/2):($2+$4/2)";
-    std::vector<double> colours;
-    for (const std::string& fill : marks.fill) {
-      colours.push_back(static_cast<double>(std::stoul(fill.substr(1), nullptr, 16)));
-    }
-    plot({&marks.x, &marks.y, &marks.width, &marks.height, &colours}, corners + ":5",
+  void add(const StripBoxes& boxes) {
+    if (boxes.x.empty()) return;
+    plot({&boxes.x, &boxes.y, &boxes.width, &boxes.height, &boxes.colour},
+         "1:2:($1-$3/2):($1+$3/2):($2-$4/2):($2+$4/2):5",
          "boxxyerror linecolor rgb variable fillstyle solid 1 noborder");
   }
 
@@ -284,22 +278,12 @@ std::string range(const char* axis, double from, double to) {
          "]\n";
 }
 
-/// Ticks with these names at 0, 1, 2, ...; gnuplot's own where there are none.
-std::string ticks(const char* axis, const std::vector<std::string>& names) {
-  std::string script = std::string("set ") + axis + "tics nomirror";
-  if (names.empty()) return script + " autofreq\n";
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    script += (i == 0 ? " (" : ", ") + gnuplot_quoted(names[i]) + " " + std::to_string(i);
-  }
-  return script + ")\n";
-}
-
 /// One label for all columns stands below the drawing (common_label()).
-std::string horizontal_axis(const Chart& chart, const ChartPanel& panel, const PanelBox& box) {
+std::string horizontal_axis(const Chart& chart, const PanelBox& box) {
   const std::string label = box.is_alone_in_row
                                 ? "set xlabel " + gnuplot_quoted(chart.x_label) + " offset 0,0.4\n"
                                 : "unset xlabel\n";
-  return "unset logscale x\n" + ticks("x", panel.x_names) + range("x", box.x_from, box.x_to) +
+  return "unset logscale x\nset xtics nomirror autofreq\n" + range("x", box.x_from, box.x_to) +
          (box.is_lowest ? "set format x '%h'\n" + label : "set format x ''\nunset xlabel\n");
 }
 
@@ -334,17 +318,18 @@ std::string linear_ticks(double from, double to, double pixels) {
 
 /// Names to the left and notes to the right of the rows.
 std::string strip_axis(const ChartPanel& panel) {
-  std::vector<std::string> names;
-  std::string notes;
+  std::string names, notes;
   const auto note = [&](const std::string& text, const std::string& at) {
     notes += "set label " + gnuplot_quoted(text) + " noenhanced at graph 1," + at + "\n";
   };
   note(panel.strips.notes, "graph 1 left offset 0.8,0.8");
-  for (const ChartStrips::Row& row : panel.strips.rows) {
-    note(row.note, "first " + std::to_string(names.size()) + " left offset 0.8,0");
-    names.push_back(row.name);
+  for (std::size_t r = 0; r < panel.strips.rows.size(); ++r) {
+    const ChartStrips::Row& row = panel.strips.rows[r];
+    note(row.note, "first " + std::to_string(r) + " left offset 0.8,0");
+    names += (r == 0 ? "" : ", ") + gnuplot_quoted(row.name) + " " + std::to_string(r);
   }
-  return ticks("y", names) + "set ytics scale 0 noenhanced\nset border 1\nunset grid\n" +
+  return "set ytics nomirror (" + names +
+         ")\nset ytics scale 0 noenhanced\nset border 1\nunset grid\n" +
          range("y", panel.axis.low, panel.axis.high) + "unset label\nset label " +
          gnuplot_quoted(panel.label) + " noenhanced at graph 0,1 left offset 0,0.8\n" + notes;
 }
@@ -353,11 +338,11 @@ std::string vertical_axis(const ChartPanel& panel, const PanelBox& box) {
   if (!panel.strips.rows.empty()) return strip_axis(panel);
   const ChartAxis& axis = panel.axis;
   const bool is_plain = !axis.logarithmic || (axis.low >= 0.01 && axis.high < 1e4);
-  const bool is_free = axis.logarithmic || !panel.y_names.empty();
   const double to = upper_end(panel);
   const std::string label = gnuplot_quoted(panel.label) + " noenhanced";
   return std::string(axis.logarithmic ? "set" : "unset") + " logscale y\n" +
-         (is_free ? ticks("y", panel.y_names) : linear_ticks(axis.low, to, box.bottom - box.top)) +
+         (axis.logarithmic ? "set ytics nomirror autofreq\n"
+                           : linear_ticks(axis.low, to, box.bottom - box.top)) +
          "set format y '" + (is_plain ? "%h" : "10^{%T}") + "'\n" + range("y", axis.low, to) +
          "unset label\n" +
          (box.has_heading
@@ -371,28 +356,6 @@ std::string place(const PanelBox& box, double width, double height) {
   };
   return margin("l", box.left / width) + margin("r", box.right / width) +
          margin("t", 1.0 - box.top / height) + margin("b", 1.0 - box.bottom / height);
-}
-
-/// Words within boxes, from the lowest one up.
-std::string texts(const ChartPanel& panel) {
-  struct Text {
-    double x, y;
-    std::string words;
-  };
-  std::vector<Text> all;
-  for (const ChartMarks& marks : panel.marks) {
-    for (std::size_t i = 0; i < marks.text.size(); ++i) {
-      if (!std::isfinite(marks.x[i]) || !std::isfinite(marks.y[i])) continue;
-      all.push_back({marks.x[i], marks.y[i], marks.text[i]});
-    }
-  }
-  std::ranges::stable_sort(all, {}, &Text::y);
-  std::string script;
-  for (const auto& [x, y, words] : all) {
-    script += "set label " + gnuplot_quoted(words) + " at " + command_number(x) + "," +
-              command_number(y) + " noenhanced front center textcolor rgb '#111111'\n";
-  }
-  return script;
 }
 
 struct LegendEntry {
@@ -413,7 +376,6 @@ std::vector<LegendEntry> legend_of(const Chart& chart) {
       if (curve.legend != panel.cell) add(curve_style(curve.style), curve.legend);
     }
     for (const ChartMarks& marks : panel.marks) {
-      if (!marks.text.empty()) continue;
       const bool is_named = panel.cell == marks.cell;
       if (chart.is_map || !is_named) add(mark_style(marks), chart.is_map ? marks.name : marks.cell);
     }
@@ -512,8 +474,8 @@ GnuplotChart gnuplot_chart(const Chart& chart, std::size_t width) {
     const PanelWriter plots(chart, k / layout.views);
     if (k % layout.views == 0) drawn.numbers += plots.numbers();
     drawn.commands += place(layout.boxes[k], w, layout.height) +
-                      horizontal_axis(chart, panel, layout.boxes[k]) +
-                      vertical_axis(panel, layout.boxes[k]) + texts(panel) +
+                      horizontal_axis(chart, layout.boxes[k]) +
+                      vertical_axis(panel, layout.boxes[k]) +
                       (k == 0 ? common_label(chart, layout) + key : "unset object\n") + "plot " +
                       plots.commands() + "\n";
   }

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <numeric>
+#include <span>
 
 namespace montecarta::analysis {
 namespace {
@@ -15,6 +17,9 @@ constexpr int kLevelsPerDecade = 8, kLevelsBelow = kLevelsPerDecade,
 constexpr int kInsideLevel = kLevelsBelow + kLevelsAbove;
 constexpr double kStripThickness = 0.84;  // of the distance between rows
 
+/// Red, green and blue, from 0 to 255.
+using Colour = std::array<int, 3>;
+
 /// ColorBrewer's RdBu, safe for the colour-blind, without its lightest colours: everything outside
 /// the band is darker than the grey inside it, on paper without colours as well.
 constexpr std::array kTooSmall = {Colour{0x05, 0x30, 0x61}, Colour{0x21, 0x66, 0xac},
@@ -24,6 +29,21 @@ constexpr std::array kTooLarge = {Colour{0xfb, 0xd0, 0xb9}, Colour{0xf4, 0xa5, 0
                                   Colour{0xd6, 0x60, 0x4d}, Colour{0xb2, 0x18, 0x2b},
                                   Colour{0x67, 0x00, 0x1f}};
 constexpr const char* kInsideColour = "#e9e9e9";
+
+/// The colour of a palette at `share` of its length, from 0 to 1, as "#0072b2"; linear between its
+/// colours.
+std::string colour_within(std::span<const Colour> palette, double share) {
+  const double place = share * static_cast<double>(palette.size() - 1);
+  const auto low = std::min(static_cast<std::size_t>(place), palette.size() - 2);
+  Colour colour{};
+  for (std::size_t c = 0; c < colour.size(); ++c) {
+    colour[c] = static_cast<int>(std::lround(
+        std::lerp(palette[low][c], palette[low + 1][c], place - static_cast<double>(low))));
+  }
+  char text[8];
+  std::snprintf(text, sizeof text, "#%02x%02x%02x", colour[0], colour[1], colour[2]);
+  return text;
+}
 
 bool is_in_band(double ratio, const Interval& band) {
   return ratio >= band.lower && ratio <= band.upper;
@@ -125,9 +145,8 @@ void add_strips(const std::vector<StripPanel>& panels, const std::vector<double>
   figure.chart.x_to = places.back();
 }
 
-ChartMarks strip_boxes(const ChartPanel& panel, double x_to) {
-  ChartMarks boxes;
-  boxes.shape = ChartMarks::Shape::boxes;
+StripBoxes strip_boxes(const ChartPanel& panel, double x_to) {
+  StripBoxes boxes;
   const std::size_t columns = panel.x.size();
   const auto begin = [&](std::size_t column) { return column < columns ? panel.x[column] : x_to; };
   for (std::size_t r = 0; r < panel.strips.rows.size(); ++r) {
@@ -143,7 +162,8 @@ ChartMarks strip_boxes(const ChartPanel& panel, double x_to) {
       boxes.y.push_back(static_cast<double>(r));
       boxes.width.push_back(right - left);
       boxes.height.push_back(kStripThickness);
-      boxes.fill.push_back(strip_colours()[static_cast<std::size_t>(level)]);
+      const std::string& colour = strip_colours()[static_cast<std::size_t>(level)];
+      boxes.colour.push_back(std::stoi(colour.substr(1), nullptr, 16));
     }
   }
   return boxes;

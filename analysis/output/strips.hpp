@@ -55,8 +55,13 @@ struct StripPanel {
 void add_strips(const std::vector<StripPanel>& panels, const std::vector<double>& places,
                 Figure& figure);
 
-/// The strips as boxes that gnuplot draws, one for neighbouring columns of the same colour. Row r
-/// from the top has height r: the axis points down.
-ChartMarks strip_boxes(const ChartPanel& panel, double x_to);
+/// Strips as boxes that gnuplot draws, one for neighbouring columns of the same colour. Row r from
+/// the top has y = r: the axis points down.
+struct StripBoxes {
+  std::vector<double> x, y;  ///< of the middle
+  std::vector<double> width, height;
+  std::vector<double> colour;  ///< 0xRRGGBB as a number
+};
+StripBoxes strip_boxes(const ChartPanel& panel, double x_to);
 
 }  // namespace montecarta::analysis

@@ -213,7 +213,6 @@ const std::vector<Place>& reading_order() {
       {"joint_nees"},
       {"observability"},
       {"smoother"},
-      {"mismatch"},
       {"error_anatomy", {"bias"}},
       {"innovations", {"nis", "whiteness"}},
       {"calibration", {"nees_quantiles", "calibration", "ranks"}},

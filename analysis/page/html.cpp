@@ -41,7 +41,7 @@ Json json_of(const Curve& curve) {
 }
 
 Json json_of(const ChartMarks& marks) {
-  constexpr std::array kShapes = {"line", "points", "crosses", "ellipses", "boxes"};
+  constexpr std::array kShapes = {"line", "points", "crosses", "ellipses"};
   Json json = {{"shape", kShapes[static_cast<std::size_t>(marks.shape)]},
                {"name", marks.name},
                {"legend", marks.cell}};
@@ -52,8 +52,6 @@ Json json_of(const ChartMarks& marks) {
   add_if_any("width", marks.width, json);
   add_if_any("height", marks.height, json);
   add_if_any("angle", marks.angle, json);
-  add_if_any("fill", marks.fill, json);
-  add_if_any("text", marks.text, json);
   Json& facts = json["facts"] = Json::array();
   for (const ChartMarks::Fact& fact : marks.facts) {
     facts.push_back({{"label", fact.label}, {"values", rounded(fact.values)}});
@@ -96,8 +94,6 @@ Json json_of(const ChartPanel& panel, const std::vector<double>* x_above) {
   json["curves"] = array_of(panel.curves);
   if (!panel.marks.empty()) json["marks"] = array_of(panel.marks);
   if (!panel.strips.rows.empty()) json["strips"] = json_of(panel.strips);
-  add_if_any("x_names", panel.x_names, json);
-  add_if_any("y_names", panel.y_names, json);
   return json;
 }
 

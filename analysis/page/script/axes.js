@@ -34,13 +34,6 @@ function isWideEnough(axis, whole) {
   return shareOf(whole, axis.to) - shareOf(whole, axis.from) > 1e-4;
 }
 
-/** Where places have names, every one in sight that has room. */
-function namedTicks(axis, names, most) {
-  if (!names) return ticksOf(axis, most);
-  const every = Math.ceil((axis.to - axis.from) / most);
-  return names.map((_, i) => i).filter((i) => i >= axis.from && i <= axis.to && i % every === 0);
-}
-
 function ticksOf(axis, most) {
   return axis.logarithmic ? logarithmicTicks(axis.from, axis.to, most)
                           : linearTicks(axis.from, axis.to, most);

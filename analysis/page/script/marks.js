@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Marks of a panel at places of their own: lines, points, crosses, ellipses, boxes.
+// Marks of a panel at places of their own: lines, points, crosses, ellipses.
 
 const REACH = 40;  // [px] how far from a mark the pointer still means it
 
@@ -8,12 +8,6 @@ const px = (value) => value.toFixed(1);
 /** What is no number has no place. */
 function placesOf({x, y}) {
   return x.map((_, i) => i).filter((i) => x[i] !== null && y[i] !== null);
-}
-
-function boxAt({x, y, width, height}, i, plot) {
-  const left = plot.x(x[i] - width[i] / 2), right = plot.x(x[i] + width[i] / 2);
-  const top = plot.y(y[i] + height[i] / 2), bottom = plot.y(y[i] - height[i] / 2);
-  return {left, right, top, bottom};
 }
 
 const SHAPES = {
@@ -44,25 +38,13 @@ const SHAPES = {
 
   ellipses(marks, plot, parent) {
     for (const i of placesOf(marks)) {
-      const {left, right} = boxAt(marks, i, plot);
       const [x, y] = [px(plot.x(marks.x[i])), px(plot.y(marks.y[i]))];
-      const across = Math.max((right - left) / 2, 1);
+      const radius = marks.width[i] / 2;
+      const across = Math.max((plot.x(marks.x[i] + radius) - plot.x(marks.x[i] - radius)) / 2, 1);
       const ratio = marks.width[i] > 0 ? marks.height[i] / marks.width[i] : 1;
       svgElement("ellipse", {class: "curve", cx: x, cy: y, rx: px(across),
         ry: px(Math.max(across * ratio, 1)), transform: `rotate(${px(-marks.angle[i])} ${x} ${y})`,
         stroke: lineStyle(marks).stroke, style: "stroke-width: 1"}, parent);
-    }
-  },
-
-  boxes(marks, plot, parent) {
-    for (const i of placesOf(marks)) {
-      const {left, right, top, bottom} = boxAt(marks, i, plot);
-      svgElement("rect", {class: "tile", x: px(left), y: px(top), width: px(right - left),
-        height: px(Math.max(bottom - top, 0)), style: `fill: ${marks.fill[i]}`, stroke: "none"},
-      parent);
-      if (!marks.text) continue;
-      svgElement("text", {class: "x inside", x: px((left + right) / 2),
-        y: px((top + bottom) / 2 + 4), text: marks.text[i]}, parent);
     }
   },
 };
@@ -100,17 +82,6 @@ const NEAREST = {
     }
     return best;
   },
-
-  boxes(marks, plot, at) {
-    let best = null;
-    const outside = (value, low, high) => Math.max(low - value, value - high, 0);
-    for (const i of placesOf(marks)) {
-      const {left, right, top, bottom} = boxAt(marks, i, plot);
-      const distance = Math.hypot(outside(at.x, left, right), outside(at.y, top, bottom));
-      if (!best || distance < best.distance) best = {i, x: right, y: top, distance, left, bottom};
-    }
-    return best;
-  },
 };
 NEAREST.crosses = NEAREST.points;
 NEAREST.ellipses = NEAREST.points;
@@ -133,8 +104,6 @@ function markAt(plot, at, isHidden, {is_map, x_label}) {
     ? [row(x_label, marks.x[i]), row(x_label.replace("x", "y"), marks.y[i])] : [];
   const rows = [...places, ...marks.facts.filter(({values}) => values[i] !== null)
     .map(({label, values}) => row(label, values[i]))];
-  const outline = marks.shape === "boxes"
-    ? `M${px(best.left)} ${px(y)}H${px(x)}V${px(best.bottom)}H${px(best.left)}Z`
-    : `M${px(x - 6)} ${px(y)}a6 6 0 1 0 12 0a6 6 0 1 0 -12 0`;
+  const outline = `M${px(x - 6)} ${px(y)}a6 6 0 1 0 12 0a6 6 0 1 0 -12 0`;
   return {title: [marks.legend, marks.name].filter(Boolean).join(": "), rows, outline, x, y};
 }

@@ -103,11 +103,10 @@ class Plot {
 
   drawGrid() {
     const {left, top, width, height} = this.box;
-    const {y_names} = this.panel;
-    for (const tick of namedTicks(this.vertical, y_names, Math.max(2, height / 36))) {
+    for (const tick of ticksOf(this.vertical, Math.max(2, height / 36))) {
       svgElement("path", {class: "grid", d: `M${left} ${this.y(tick)}h${width}`}, this.group);
       svgElement("text", {class: "y tick", x: left - 6, y: this.y(tick) + 4,
-        text: y_names?.[tick] ?? readable(tick)}, this.group);
+        text: readable(tick)}, this.group);
     }
     this.drawTimes();
     svgElement("path", {class: "frame", d: `M${left} ${top}v${height}h${width}`}, this.group);
@@ -116,12 +115,11 @@ class Plot {
   /** Ticks of the horizontal axis. */
   drawTimes() {
     const {left, top, width, height} = this.box;
-    const {x_names} = this.panel;
-    for (const tick of namedTicks(this.horizontal, x_names, Math.max(2, width / 90))) {
+    for (const tick of ticksOf(this.horizontal, Math.max(2, width / 90))) {
       svgElement("path", {class: "grid", d: `M${this.x(tick)} ${top}v${height}`}, this.group);
       if (!this.box.lowest) continue;
       svgElement("text", {class: "x tick", x: this.x(tick), y: top + height + 17,
-        text: x_names?.[tick] ?? readable(tick)}, this.group);
+        text: readable(tick)}, this.group);
     }
   }
 

@@ -72,24 +72,14 @@ TEST(GnuplotChart, HasAnAxisWhereNothingIsANumber) {
   EXPECT_THAT(gnuplot_chart(chart, 900).commands, HasSubstr("set yrange [0:1]"));
 }
 
-TEST(GnuplotChart, NamesPlacesOfAnAxis) {
-  Chart chart = two_panels();
-  chart.panels[1].x_names = {"it's", "b"};
-  EXPECT_THAT(gnuplot_chart(chart, 900).commands,
-              HasSubstr("set xtics nomirror ('it''s' 0, 'b' 1)"));
-}
-
 /// Every shape, through gnuplot itself, in both formats.
 TEST(GnuplotChart, IsDrawnWhateverItHolds) {
   const ScratchFolder folder;
   using Shape = ChartMarks::Shape;
   Figure figure{"all", "All", "All shapes.", {}, two_panels()};
-  for (const Shape shape :
-       {Shape::line, Shape::points, Shape::crosses, Shape::ellipses, Shape::boxes}) {
+  for (const Shape shape : {Shape::line, Shape::points, Shape::crosses, Shape::ellipses}) {
     figure.chart.panels[0].marks.push_back(marks_of(shape));
   }
-  figure.chart.panels[0].marks.back().fill = {"#123456", "#000000", "#ffffff"};
-  figure.chart.panels[0].marks.back().text = {"a", "b", "it's"};
   figure.chart.panels.push_back({"nothing", {false, 0.0, 1.0}, {}, {}, {}});
   for (const std::size_t columns : {1u, 2u}) {
     figure.chart.columns = columns;

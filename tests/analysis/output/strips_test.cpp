@@ -77,12 +77,13 @@ TEST(Strips, LoseNoExcursionWhenTheyAreThinned) {
 
 TEST(Strips, AreBoxesOfOneColourWithoutGapsBetweenThem) {
   const Figure figure = strips_of({{1.0, 1.0, 20.0, kNaN, 0.2}, {1.0, 1.0, 1.0, 1.0, 1.0}});
-  const ChartMarks boxes = strip_boxes(figure.chart.panels.front(), figure.chart.x_to);
+  const StripBoxes boxes = strip_boxes(figure.chart.panels.front(), figure.chart.x_to);
   EXPECT_THAT(boxes.y, ElementsAre(0.0, 0.0, 0.0, 1.0));
   EXPECT_THAT(boxes.x, ElementsAre(1.75, 3.0, 4.75, 2.5));
   EXPECT_THAT(boxes.width, ElementsAre(3.5, 1.0, 0.5, 5.0)) << "the first reaches below the second";
-  EXPECT_THAT(boxes.fill, ElementsAre(strip_colours()[kGrey], strip_colours()[18],
-                                      strip_colours()[2], strip_colours()[kGrey]));
+  EXPECT_THAT(boxes.colour,
+              ElementsAre(0xe9e9e9, std::stoi(strip_colours()[18].substr(1), nullptr, 16),
+                          std::stoi(strip_colours()[2].substr(1), nullptr, 16), 0xe9e9e9));
 }
 
 TEST(Strips, AreDrawnWithNamesNotesAndKey) {

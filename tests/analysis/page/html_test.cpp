@@ -89,20 +89,17 @@ TEST(ChartJson, HoldsMarksWithTheirFacts) {
   Chart chart{"x [m]", -1, 1, {}};
   ChartPanel& panel = chart.panels.emplace_back();
   panel.cell = "a";
-  panel.y_names = {"low", "high"};
   ChartMarks& marks = panel.marks.emplace_back();
-  marks.name = "tile";
+  marks.name = "fix";
   marks.cell = "a";
-  marks.shape = ChartMarks::Shape::boxes;
+  marks.shape = ChartMarks::Shape::crosses;
   marks.x = {0, std::numeric_limits<double>::quiet_NaN()};
   marks.y = {1, 2};
-  marks.fill = {"#123456", "#000000"};
   marks.facts = {{"time [s]", {3, 4}}};
   const std::string json = chart_json(chart);
-  EXPECT_THAT(json, HasSubstr(R"({"shape":"boxes","name":"tile","legend":"a","colour":"#0072B2",)"
-                              R"("dash":1,"x":[0,null],"y":[1,2],"fill":["#123456","#000000"],)"
+  EXPECT_THAT(json, HasSubstr(R"({"shape":"crosses","name":"fix","legend":"a","colour":"#0072B2",)"
+                              R"("dash":1,"x":[0,null],"y":[1,2],)"
                               R"("facts":[{"label":"time [s]","values":[3,4]}]})"));
-  EXPECT_THAT(json, HasSubstr(R"("y_names":["low","high"])"));
   EXPECT_THAT(json, testing::Not(HasSubstr("x_first")));
   chart.x_first = 0.5;
   EXPECT_THAT(chart_json(chart), HasSubstr(R"("x_first":0.5)"));

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Figures of marks at places of their own: maps, points, trees and tiles."""
+"""Figures of marks at places of their own: maps, points and trees."""
 
 from on_page import OnPage
 
@@ -97,25 +97,3 @@ class Tree(OnPage):
         title, facts = self.said("ancestry")
         self.assertEqual(title, "fastslam2_m20")
         self.assertEqual(facts["descendants at the end"], "20")
-
-
-class Tiles(OnPage):
-
-    study = "tiles"
-
-    def setUp(self):
-        super().setUp()
-        self.unfold("mismatch", "mismatch")
-
-    def test_say_what_the_filter_believed(self):
-        chart = self.chart("mismatch")
-        tiles = chart["panels"][0]["marks"][0]
-        self.assertEqual(chart["panels"][0]["x_names"], ["1", "2"])
-        for i, (x, y) in enumerate(((0, 0), (0, 1), (1, 0), (1, 1))):
-            tile = f"#figure_mismatch rect.tile:nth-of-type({i + 1})"
-            self.page.hover(self.page.middle(tile))
-            facts = self.said("mismatch")[1]
-            self.assertEqual((facts["motion noise"], facts["sensor noise"]),
-                             (str(x + 1), str(y + 1)))
-            value = tiles["facts"][2]["values"][i]
-            self.assertAlmostEqual(float(facts["ANEES by components"]) / value, 1, delta=1e-3)

@@ -15,9 +15,8 @@ import chromium
 from figures import Hover, Legend, Touch, Zoom  # noqa: F401: found by unittest
 from figures import Strips, StripsOnAPhone  # noqa: F401
 from folding import Cards, Folding  # noqa: F401
-from marks import Maps, Tiles, Tree  # noqa: F401
-from on_page import (FIRST_STUDY, STRIPS, STUDY, TILES, OnPage,  # noqa: F401
-                     make_report)
+from marks import Maps, Tree  # noqa: F401
+from on_page import FIRST_STUDY, STRIPS, STUDY, OnPage, make_report  # noqa: F401
 from opening import Opening  # noqa: F401
 from player import FirstStudy, Player  # noqa: F401
 
@@ -27,7 +26,7 @@ if __name__ == "__main__":
         sys.exit(77)
     with tempfile.TemporaryDirectory(prefix="montecarta_page_") as folder:
         montecarta = sys.argv.pop(1)
-        for name, text in (("page", STUDY), ("tiles", TILES), ("strips", STRIPS),
+        for name, text in (("page", STUDY), ("strips", STRIPS),
                            ("first", FIRST_STUDY.read_text())):
             OnPage.reports[name] = make_report(montecarta, pathlib.Path(folder) / name, text)
         unittest.main(verbosity=2)

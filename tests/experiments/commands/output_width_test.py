@@ -20,7 +20,7 @@ import termios
 
 KINDS = ("filters", "settings", "studies", "worlds", "metrics", "columns")
 SOURCES = str(pathlib.Path(__file__).resolve().parents[3])
-STUDIES = ("first_study", "mismatch", "calibration", "robots", "beyond_small_vehicle")
+STUDIES = ("first_study", "calibration", "robots", "beyond_small_vehicle")
 SMALL = ["--set", "study.runs=3"]
 
 

@@ -3,6 +3,7 @@
 #include "experiments/recordings/log_csv.hpp"
 #include "experiments/study/make_drives.hpp"
 #include "experiments/study/make_plan.hpp"
+#include "tests/analysis/studied_result.hpp"
 #include "tests/doubles/complaint.hpp"
 #include "tests/doubles/matchers.hpp"
 #include "tests/doubles/scratch_folder.hpp"
@@ -85,6 +86,27 @@ TEST(VehicleStudy, NoiseGrowsByTheSquareOfAMismatch) {
   }
   EXPECT_TRUE(covariances[1].isApprox(9.0 * covariances[0], 1e-12));
   EXPECT_NEAR(covariances[0](0, 0), 0.01 * (0.09 + 0.1 * 9.0), 1e-4);
+}
+
+// Until the first landmark is seen again the covariance is that of the motion alone.
+TEST(VehicleStudy, AFilterBelievesTheNoiseTimesItsFactors) {
+  const ScratchFolder folder;
+  const std::filesystem::path path = folder / "out.h5";
+  analysis::write_studied_result(path, analysis::kTinyLoop,
+                                 {"cells.cell=ekf_slam motion_noise=1,2 sensor_noise=1,2",
+                                  "study.runs=1", "scenario.noise=matched"});
+  const ResultFile file(path);
+  ASSERT_EQ(file.cells().size(), 4u);
+  std::vector<std::vector<double>> covariance;
+  for (const StoredCell& cell : file.cells()) {
+    auto& P = covariance.emplace_back(9 * file.times().size());
+    file.read(cell, "pose_covariance", 0, std::span(P));
+  }
+  EXPECT_DOUBLE_EQ(covariance[1][0], covariance[0][0]);
+  EXPECT_DOUBLE_EQ(covariance[2][0], 4.0 * covariance[0][0]);
+  EXPECT_DOUBLE_EQ(covariance[3][8], 4.0 * covariance[0][8]);
+  const std::size_t last = 9 * (file.times().size() - 1);
+  EXPECT_GT(covariance[1][last], 1.2 * covariance[0][last]);
 }
 
 const std::string kWorld = "[study]\nname = s\nruns = 1\n[scenario]\nworld = web_loop\n";
