@@ -55,7 +55,6 @@ struct FailedRun {
   std::uint64_t run = 0;
   std::uint32_t step = 0;  ///< 0-based
   std::string reason;
-  double time = 0.0;  ///< [s] of the scan at or after the step
 };
 
 /// Results of the metrics, at most one of each type: a later result replaces an earlier one.

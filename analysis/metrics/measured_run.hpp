@@ -123,7 +123,7 @@ struct RunCriteria {
   /// Components of the errors that are judged.
   std::vector<std::string> components = {};
   /// {run of the study} Empty if all runs process one drive. Otherwise `times` are those of the
-  /// longest drive (MeasuredRun::times has those of a run), and references and judged_fixes those
+  /// longest drive, and references and judged_fixes those
   /// of the first. Such drives are recordings without truth: they have no errors and no NEES.
   std::vector<DriveCriteria> drives = {};
 
@@ -135,7 +135,6 @@ RunCriteria criteria_of(const ResultFile& file, double level, double within = kU
 
 /// One run being read and measured while others are. Keeps its memory from run to run.
 struct MeasuredRun {
-  std::span<const double> times;  ///< [s] of its scans
   RunRows rows;
   RunMetrics metrics;
   std::vector<ReferenceRun> references;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Proper scoring rules, which rank distributions: log score and energy score (STATISTICS 23).
+// Proper scoring rules, which rank distributions: log score and energy score (STATISTICS 7).
 #include "analysis/metrics/proper_scores.hpp"
 
 #include "analysis/metrics/cell_report.hpp"

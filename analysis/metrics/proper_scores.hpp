@@ -12,7 +12,7 @@
 
 namespace montecarta::analysis {
 
-/// Proper scoring rules of one run (STATISTICS 23): the smaller, the better the filter's
+/// Proper scoring rules of one run (STATISTICS 7): the smaller, the better the filter's
 /// distribution agrees with the truth. Their mean is least for the distribution from which the
 /// truth is drawn, so neither a covariance that is too small nor one that is too large pays.
 struct ProperScores {

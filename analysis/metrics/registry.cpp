@@ -29,7 +29,6 @@ namespace montecarta::analysis {
   METRIC(map)                      \
   METRIC(joint_nees)               \
   METRIC(error_anatomy)            \
-  METRIC(survival)                 \
   METRIC(innovations)              \
   METRIC(diversity)                \
   METRIC(calibration)              \

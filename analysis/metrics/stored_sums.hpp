@@ -5,7 +5,6 @@
 #include "engine/records/sum_groups.hpp"
 
 #include <cstdint>
-#include <string>
 #include <vector>
 
 /// Sums over groups of runs that are stored in place of the runs (record.columns has sums).
@@ -23,17 +22,10 @@ std::vector<NewGroup> sums_to_store(const ResultFile& rows, const Parallel& para
 /// [byte] About how large the sums over `runs` runs of a cell with `scans` are.
 double bytes_of_sums(std::uint64_t runs, std::size_t scans);
 
-/// A run that failed, as it is stored.
-struct StoredFailure {
-  std::uint64_t run = 0;
-  std::uint32_t step = 0;
-  std::string reason;
-};
-
 /// A cell of a file with sums.
 struct StoredSums {
   std::vector<std::uint64_t> complete;  ///< numbers of the runs
-  std::vector<StoredFailure> failures;
+  std::vector<FailedRun> failures;
   CellSums sums;
 };
 

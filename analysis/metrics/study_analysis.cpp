@@ -17,12 +17,6 @@
 namespace montecarta::analysis {
 namespace {
 
-/// [s] of the first scan at or after a step, or of the last one.
-double scan_time(const RunDrive& drive, std::uint32_t step) {
-  const auto scan = std::ranges::lower_bound(drive.scan_steps, step) - drive.scan_steps.begin();
-  return drive.scan_times[std::min(static_cast<std::size_t>(scan), drive.scan_steps.size() - 1)];
-}
-
 /// Unfinished work may have a fingerprint without its run, after a power cut.
 bool is_work_in_progress(const std::filesystem::path& path) {
   return path.filename().string().find(".part") != std::string::npos;
@@ -48,12 +42,6 @@ void count_looks(const ResultFile& file, CellAnalysis& cell) {
       std::ranges::count_if(looks, [&](std::uint64_t look) { return look <= made; }));
 }
 
-void add_failure(const ResultFile& file, std::uint64_t run, std::uint32_t step, std::string reason,
-                 CellAnalysis& cell) {
-  const double time = scan_time(drive_of_run(file, run), step);
-  cell.failures.push_back({run, step, std::move(reason), time});
-}
-
 /// Run indices in the file of the complete runs among the first `runs`; counts and names them all
 /// in `cell`.
 std::vector<std::size_t> complete_runs(const ResultFile& file, const StoredCell& stored,
@@ -74,7 +62,7 @@ std::vector<std::size_t> complete_runs(const ResultFile& file, const StoredCell&
     }
     if (status[i] == RunStatus::failed) {
       file.expect_whole(stored, i);
-      add_failure(file, file.runs()[i], steps[i], reasons[i], cell);
+      cell.failures.push_back({file.runs()[i], steps[i], reasons[i]});
     }
   }
   for (const std::size_t i : complete) cell.runs.push_back(file.runs()[i]);
@@ -98,8 +86,7 @@ struct CellTask {
                      const Parallel& parallel) {
     StoredSums found = read_stored_sums(file, *stored_cell, criteria, parallel);
     cell.runs = std::move(found.complete);
-    for (StoredFailure& failure : found.failures)
-      add_failure(file, failure.run, failure.step, std::move(failure.reason), cell);
+    cell.failures = std::move(found.failures);
     count_looks(file, cell);
     return std::move(found.sums);
   }

@@ -6,7 +6,6 @@
 #include "analysis/metrics/cramer_rao.hpp"
 #include "analysis/metrics/imported_estimates.hpp"
 #include "analysis/metrics/measured_run.hpp"
-#include "analysis/metrics/survival.hpp"
 #include "analysis/output/number_text.hpp"
 #include "analysis/statistics/spread.hpp"
 #include "engine/numbers/angle.hpp"
@@ -24,12 +23,6 @@ namespace {
 std::string band_text(const CellAnalysis& cell, std::size_t dimension, double level) {
   if (cell.complete == 0) return "-";
   return interval_text(nees_bounds(cell.complete, dimension, level));
-}
-
-std::string median_exit_text(const CellAnalysis& cell) {
-  const Survival& survival = cell.get<Survival>();
-  if (survival.runs == 0) return "-";
-  return time_with_interval(survival.median, survival.median_interval);
 }
 
 const NeesResult* tested_pose(const CellAnalysis& cell) {
@@ -291,8 +284,7 @@ TextTable verdict_table(const StudyAnalysis& study) {
     return {{"runs", runs_in_words(cell), Align::left},
             {"verdict", in_words(cell.verdict), Align::left},
             {"NEES ratio [" + level_text(study.level) + "]", ratio_text(cell)},
-            {"scans in band", pose == nullptr ? "-" : percent(pose->share_inside())},
-            {"median time of loss", median_exit_text(cell)}};
+            {"scans in band", pose == nullptr ? "-" : percent(pose->share_inside())}};
   });
 }
 
@@ -350,7 +342,7 @@ std::vector<std::string> verdict_notes(const StudyAnalysis& study) {
   const auto add = [&](const char* key, const Values& values) {
     std::ranges::move(paragraphs("verdict", key, values), std::back_inserter(notes));
   };
-  add("notes", {{"level", level_text(study.level)}, {"lasting", std::to_string(kLastingScans)}});
+  add("notes", {{"level", level_text(study.level)}});
   if (study.looks.size() > 1) {
     add("looks", {{"looks", std::to_string(study.looks.size())},
                   {"first", std::to_string(study.looks[0])},

@@ -73,13 +73,6 @@ std::string with_interval(double mean, const Interval& interval) {
 
 std::string fixed_seconds(double time) { return printed("%.*f", 1, time) + " s"; }
 
-std::string time_with_interval(double time, const Interval& interval) {
-  if (std::isinf(time)) return "-";
-  if (std::isnan(interval.lower)) return fixed_seconds(time);
-  const auto each = [](double t) { return std::isinf(t) ? "never" : printed("%.*f", 1, t); };
-  return each(time) + " s [" + each(interval.lower) + ", " + each(interval.upper) + "]";
-}
-
 std::string exact_text(double value) {
   if (std::isnan(value)) return "nan";
   std::array<char, 64> text{};

@@ -30,10 +30,6 @@ std::string with_interval(double mean, const Interval& interval);
 /// A time to a tenth of a second, "4.2 s".
 std::string fixed_seconds(double time);
 
-/// A time with its interval, "4.2 s [3.8, never]"; "-" if the time is infinite. The time alone
-/// where there is no interval.
-std::string time_with_interval(double time, const Interval& interval);
-
 /// The shortest text that reads back as the same number; "nan", "inf".
 std::string exact_text(double value);
 

@@ -207,7 +207,6 @@ const std::vector<Place>& reading_order() {
       {"failures"},
       {"components"},
       {"paths"},
-      {"survival"},
       {"map_errors"},
       {"map_size"},
       {"joint_nees"},

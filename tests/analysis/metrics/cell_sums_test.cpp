@@ -2,7 +2,6 @@
 #include "analysis/metrics/cell_sums.hpp"
 
 #include "analysis/metrics/error_anatomy.hpp"
-#include "analysis/metrics/survival.hpp"
 #include "analysis/metrics/verdict_table.hpp"
 #include "analysis/statistics/spread.hpp"
 #include "tests/analysis/reported.hpp"
@@ -87,25 +86,6 @@ TEST(CellSums, FindsInflatedErrorsAboveTheBandAndSaysHowSureItIs) {
   EXPECT_NEAR(
       cell.find<ErrorAnatomy>()->happened[2].back() / cell.find<ErrorAnatomy>()->believed[2].back(),
       1.5, 0.5);
-  EXPECT_EQ(cell.get<Survival>().runs, 30u);
-}
-
-TEST(CellSums, LosesARunAtATimeOfItsOwnDrive) {
-  SyntheticStudy study;
-  study.scans = 50;
-  study.bias = {10.0, 0.0, 0.0};
-  const std::vector<double> first = scan_times(50, 0.2), second = scan_times(50, 0.3);
-  RunCriteria criteria = criteria_of_scans(first);
-  criteria.drives = {{first, {}, {}}, {second, {}, {}}};
-  CellSums sums(criteria);
-  MeasuredRun run;
-  run.rows = study.run(1);
-  run.rows.run = 1;
-  run.measure(criteria, 0);
-  sums.add(run);
-  CellAnalysis cell;
-  sums.put(cell);
-  EXPECT_EQ(cell.get<Survival>().median, second.front());
 }
 
 TEST(CellSums, FindsTooLargeACovarianceBelowTheBand) {

@@ -82,8 +82,6 @@ TEST(NumberText, IsShortAndSaysWhatItMeasured) {
   EXPECT_EQ(with_interval(272632.0, {1.0, 500000.0}), "2.73e5 [1.00, 5.00e5]");
   EXPECT_EQ(with_interval(3.58e-14, {3.3e-14, 3.8e-14}), "3.6e-14 [3.3e-14, 3.8e-14]");
   EXPECT_EQ(with_interval(-0.0002, {-0.04, 0.04}), "0.000 [-0.040, 0.040]");
-  EXPECT_EQ(time_with_interval(4.21, {3.84, 5.0}), "4.2 s [3.8, 5.0]");
-  EXPECT_EQ(time_with_interval(4.21, {kNaN, kNaN}), "4.2 s");
   EXPECT_EQ(percent(0.9456), "94.6 %");
   EXPECT_EQ(level_text(0.95), "95 %");
   EXPECT_EQ(level_text(0.999), "99.9 %");
