@@ -66,7 +66,7 @@ const std::vector<ResultNumber<LineageSummary>> kLineageQuantities = {
     {"distinct_ancestors_100_s_ago", "1", ancestors_ago<6>, "100 s ago"},
     {"coalescence", "s", &LineageSummary::coalescence, "common ancestor", common_ancestor_text},
     {"coalesced_share", "1", &LineageSummary::coalesced_share, "scans with one", percent},
-    {"monte_carlo_share", "1", &LineageSummary::monte_carlo_share}};
+    {"monte_carlo_share", "1", &LineageSummary::monte_carlo_share, "Monte Carlo share", percent}};
 
 /// Throws RunError where a parent does not exist.
 void expect_parents(std::span<const std::uint32_t> parents) {

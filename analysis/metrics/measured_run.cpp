@@ -3,7 +3,7 @@
 
 #include "analysis/data/study_settings.hpp"
 #include "analysis/metrics/cramer_rao.hpp"
-#include "analysis/metrics/error_anatomy.hpp"
+#include "analysis/metrics/error_envelopes.hpp"
 #include "analysis/metrics/imported_estimates.hpp"
 #include "analysis/statistics/sampler_scale.hpp"
 #include "analysis/statistics/spread.hpp"

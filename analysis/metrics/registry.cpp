@@ -28,7 +28,7 @@ namespace montecarta::analysis {
   METRIC(bound)                    \
   METRIC(map)                      \
   METRIC(joint_nees)               \
-  METRIC(error_anatomy)            \
+  METRIC(error_envelopes)          \
   METRIC(innovations)              \
   METRIC(diversity)                \
   METRIC(calibration)              \

@@ -212,7 +212,6 @@ const std::vector<Place>& reading_order() {
       {"joint_nees"},
       {"observability"},
       {"smoother"},
-      {"error_anatomy", {"bias"}},
       {"innovations", {"nis", "whiteness"}},
       {"calibration", {"nees_quantiles", "calibration", "ranks"}},
       {"diversity", {"diversity", "ess", "ancestry"}},

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/cell_sums.hpp"
 
-#include "analysis/metrics/error_anatomy.hpp"
+#include "analysis/metrics/error_envelopes.hpp"
 #include "analysis/metrics/verdict_table.hpp"
 #include "analysis/statistics/spread.hpp"
 #include "tests/analysis/reported.hpp"
@@ -82,10 +82,9 @@ TEST(CellSums, FindsInflatedErrorsAboveTheBandAndSaysHowSureItIs) {
   EXPECT_LT(cell.interval_of("position_rmse").lower, cell.over_runs("position_rmse").mean);
   EXPECT_GT(cell.interval_of("position_rmse").upper, cell.over_runs("position_rmse").mean);
   EXPECT_TRUE(std::isnan(cell.interval_of("ess").lower));
-  ASSERT_TRUE(cell.find<ErrorAnatomy>());
-  EXPECT_NEAR(
-      cell.find<ErrorAnatomy>()->happened[2].back() / cell.find<ErrorAnatomy>()->believed[2].back(),
-      1.5, 0.5);
+  const ErrorsOverTime* errors = cell.find<ErrorsOverTime>();
+  ASSERT_NE(errors, nullptr);
+  EXPECT_NEAR(errors->rms[2].back() / errors->believed[2].back(), 1.5, 0.5);
 }
 
 TEST(CellSums, FindsTooLargeACovarianceBelowTheBand) {
@@ -98,7 +97,7 @@ TEST(CellSums, AnErrorIsTheEstimateLessTheTruth) {
   SyntheticStudy study;
   study.bias = {0.0, 0.0, 0.2};
   const CellAnalysis cell = analyze_runs(study, 40);
-  const std::vector<double>& bias = cell.find<ErrorAnatomy>()->bias[2];
+  const std::vector<double>& bias = cell.find<ErrorsOverTime>()->mean[2];
   EXPECT_NEAR(mean_of_finite(bias), 0.2, 0.01);
 }
 

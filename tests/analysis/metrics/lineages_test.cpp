@@ -4,6 +4,7 @@
 #include "analysis/figures/ancestry_figure.hpp"
 #include "engine/errors.hpp"
 #include "engine/random/stream.hpp"
+#include "tests/analysis/reported.hpp"
 #include "tests/analysis/synthetic_runs.hpp"
 #include "tests/doubles/matchers.hpp"
 
@@ -109,6 +110,19 @@ TEST(LineageSums, AverageWhatRunsHave) {
   EXPECT_DOUBLE_EQ(sums.result().coalescence, 4.0);
   EXPECT_DOUBLE_EQ(sums.result().ancestors[6], 2.0);
   EXPECT_DOUBLE_EQ(sums.result().monte_carlo_share, 0.25);
+}
+
+TEST(DiversityTable, SaysWhatFewParticlesCost) {
+  StudyAnalysis study;
+  CellAnalysis& cell = study.cells.emplace_back();
+  cell.scan_series = {{"ess", "1", {5.0}}};
+  LineageSummary lineages;
+  lineages.monte_carlo_share = 0.125;
+  cell.findings.put(lineages);
+  const TextTable table = reported_table(study, "diversity");
+  ASSERT_EQ(table.rows.size(), 1u);
+  EXPECT_EQ(table.headings.back().text, "Monte Carlo share");
+  EXPECT_EQ(table.rows[0].back(), "12.5 %");
 }
 
 using Branch = AncestryTree::Branch;

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/metrics/error_anatomy.hpp"
-#include "analysis/metrics/lineages.hpp"
 #include "analysis/metrics/study_analysis.hpp"
 #include "analysis/statistics/spread.hpp"
 #include "tests/analysis/reported.hpp"
@@ -12,27 +10,6 @@
 
 namespace montecarta::analysis {
 namespace {
-
-StudyAnalysis study_of(CellAnalysis cell) {
-  StudyAnalysis study;
-  cell.label = "srcd_m10";
-  cell.complete = 30;
-  study.cells = {std::move(cell)};
-  return study;
-}
-
-TEST(ErrorAnatomyTable, SaysHowMuchIsBiasAndWhatFewParticlesCost) {
-  CellAnalysis cell;
-  ErrorAnatomy anatomy;
-  anatomy.mean_bias_share = 0.25;
-  cell.findings.put(anatomy);
-  EXPECT_EQ(reported_table(study_of(cell), "error_anatomy").rows.at(0).back(), "-");
-  LineageSummary lineages;
-  lineages.monte_carlo_share = 0.125;
-  cell.findings.put(lineages);
-  const TextTable table = reported_table(study_of(cell), "error_anatomy");
-  EXPECT_THAT(table.rows.at(0), ElementsAre("srcd_m10", "25.0 %", "12.5 %"));
-}
 
 using MeanSquares = std::vector<double>;  ///< {run} of both errors
 

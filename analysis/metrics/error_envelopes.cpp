@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Errors beside the deviations that the filter reports (STATISTICS 8).
+#include "analysis/metrics/error_envelopes.hpp"
+
+#include "analysis/metrics/cell_report.hpp"
+#include "analysis/metrics/measured_run.hpp"
+#include "engine/numbers/angle.hpp"
+
+#include <cmath>
+#include <optional>
+#include <utility>
+
+namespace montecarta::analysis {
+namespace {
+
+constexpr double kEnvelope = 3.0;  // standard deviations
+constexpr std::size_t kMostEnvelopeRows = 6;
+
+class ErrorsOverRuns final : public MergedSums<ErrorsOverRuns> {
+ public:
+  explicit ErrorsOverRuns(const RunCriteria& criteria) : moments_(criteria.times.size()) {}
+  void add(const MeasuredRun& run) override {
+    const RunMetrics& metrics = run.metrics;
+    if (metrics.covariances().empty()) return;
+    if (!first_) first_ = error_trace(run.rows.run, metrics.errors(), metrics.covariances());
+    moments_.add(metrics.errors(), metrics.covariances());
+  }
+  void put(CellAnalysis& cell) override {
+    if (!first_) return;
+    cell.findings.put(moments_.result());
+    cell.findings.put(*first_);
+  }
+  static constexpr auto parts() {
+    return std::tuple(added(&ErrorsOverRuns::moments_), of_first_run(&ErrorsOverRuns::first_));
+  }
+
+ private:
+  std::optional<ErrorTrace> first_;
+  ErrorMoments moments_;
+};
+
+void error_series(const CellAnalysis& cell, std::vector<Frame::Column>& all) {
+  const ErrorsOverTime* errors = cell.find<ErrorsOverTime>();
+  if (errors == nullptr) return;
+  for (std::size_t c = 0; c < kErrorComponents.size(); ++c) {
+    const std::string name = kErrorComponents[c];
+    const std::string units = name == "heading" ? "rad" : "m";
+    all.push_back({"rms_error_" + name, units, errors->rms[c]});
+    all.push_back({"believed_deviation_" + name, units, errors->believed[c]});
+    all.push_back({"mean_error_" + name, units, errors->mean[c]});
+  }
+}
+
+/// The error of one component with its envelope; angles in degrees.
+Panel envelope_panel(const CellAnalysis& cell, std::size_t style, std::size_t component) {
+  const ErrorTrace& trace = *cell.find<ErrorTrace>();
+  const std::string name = kErrorComponents[component];
+  const bool is_angle = name == "heading";
+  const double factor = is_angle ? 180.0 / kPi : 1.0;
+  Panel panel{"error_" + name + "_" + cell.label,
+              name + (is_angle ? " [deg], " : " [m], "),
+              {},
+              {},
+              Scale::around_zero};
+  panel.label += cell.label;
+  panel.curves.push_back({cell.label, style, scaled(trace.error[component], factor),
+                          scaled(trace.deviation[component], factor * kEnvelope)});
+  return panel;
+}
+
+/// A row of panels, forward, left and heading, for each of the first cells.
+Figure envelope_figure(const StudyAnalysis& study) {
+  Figure figure = figure_of("error_envelopes");
+  std::vector<Panel> panels;
+  std::vector<std::string> cells;
+  for (std::size_t i = 0; i < study.cells.size() && cells.size() < kMostEnvelopeRows; ++i) {
+    if (!study.cells[i].find<ErrorTrace>()) continue;
+    cells.push_back(study.cells[i].label);
+    for (std::size_t c = 0; c < kErrorComponents.size(); ++c)
+      panels.push_back(envelope_panel(study.cells[i], i, c));
+  }
+  add_panels(panels, study.times, figure);
+  for (std::size_t p = 0; p < figure.chart.panels.size(); ++p)
+    figure.chart.panels[p].cell = cells[p / kErrorComponents.size()];
+  figure.chart.columns = kErrorComponents.size();
+  figure.chart.least = 220;
+  figure.chart.aspect = 0.5;
+  return figure;
+}
+
+std::vector<Figure> error_envelopes_figures(const StudyAnalysis& study) {
+  return {envelope_figure(study)};
+}
+
+}  // namespace
+
+ErrorTrace error_trace(std::uint64_t run, std::span<const Eigen::Vector3d> errors,
+                       std::span<const Eigen::Matrix3d> covariances) {
+  ErrorTrace trace;
+  trace.run = run;
+  for (std::size_t s = 0; s < errors.size(); ++s) {
+    for (int c = 0; c < 3; ++c) {
+      const auto component = static_cast<std::size_t>(c);
+      trace.error[component].push_back(errors[s](c));
+      trace.deviation[component].push_back(std::sqrt(covariances[s](c, c)));
+    }
+  }
+  return trace;
+}
+
+void ErrorMoments::add(std::span<const Eigen::Vector3d> errors,
+                       std::span<const Eigen::Matrix3d> covariances) {
+  for (std::size_t s = 0; s < scans_.size(); ++s) {
+    if (!errors[s].allFinite() || !covariances[s].allFinite()) continue;
+    scans_[s].n += 1.0;
+    scans_[s].error += errors[s];
+    scans_[s].squares += errors[s].cwiseAbs2();
+    scans_[s].variances += covariances[s].diagonal();
+  }
+}
+
+ErrorsOverTime ErrorMoments::result() const {
+  ErrorsOverTime found;
+  for (const Sums& sums : scans_) {
+    for (int c = 0; c < 3; ++c) {
+      const auto component = static_cast<std::size_t>(c);
+      found.rms[component].push_back(std::sqrt(sums.squares(c) / sums.n));
+      found.believed[component].push_back(std::sqrt(sums.variances(c) / sums.n));
+      found.mean[component].push_back(sums.error(c) / sums.n);
+    }
+  }
+  return found;
+}
+
+Metric error_envelopes_metric() {
+  return {.sums = make_sums<ErrorsOverRuns>,
+          .add_series = error_series,
+          .figures = error_envelopes_figures};
+}
+
+}  // namespace montecarta::analysis
