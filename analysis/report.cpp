@@ -6,7 +6,7 @@
 #include "analysis/figures/path_figure.hpp"
 #include "analysis/metrics/metric.hpp"
 #include "analysis/metrics/study_analysis.hpp"
-#include "analysis/output/csv_file.hpp"
+#include "analysis/output/frame.hpp"
 #include "analysis/output/text_table.hpp"
 #include "analysis/page/page.hpp"
 #include "analysis/page/replay/replay.hpp"

@@ -2,7 +2,6 @@
 #include "analysis/comparison/study_comparison.hpp"
 
 #include "analysis/metrics/cell_analysis.hpp"
-#include "analysis/output/csv_file.hpp"
 #include "analysis/output/frame.hpp"
 #include "analysis/output/number_text.hpp"
 #include "analysis/statistics/bootstrap.hpp"

@@ -5,7 +5,6 @@
 #include "analysis/metrics/cell_analysis.hpp"
 #include "analysis/metrics/measured_run.hpp"
 #include "analysis/metrics/metric.hpp"
-#include "analysis/metrics/score.hpp"
 #include "engine/core/plan.hpp"
 #include "engine/records/result_file.hpp"
 #include "engine/threads/parallel.hpp"

@@ -7,7 +7,7 @@
 #include "analysis/metrics/imported_estimates.hpp"
 #include "analysis/statistics/sampler_scale.hpp"
 #include "analysis/statistics/spread.hpp"
-#include "analysis/verdict/family.hpp"
+#include "analysis/verdict/verdict.hpp"
 #include "engine/core/pose.hpp"
 #include "engine/errors.hpp"
 #include "engine/numbers/real.hpp"

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "analysis/metrics/cell_analysis.hpp"
-#include "analysis/metrics/score.hpp"
 #include "analysis/output/frame.hpp"
 #include "analysis/output/number_text.hpp"
 #include "analysis/output/text_table.hpp"

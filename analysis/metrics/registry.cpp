@@ -2,7 +2,6 @@
 // The list of metrics, and the scores, numbers, sections and figures of all of them.
 #include "analysis/metrics/cell_analysis.hpp"
 #include "analysis/metrics/metric.hpp"
-#include "analysis/metrics/score.hpp"
 #include "engine/errors.hpp"
 
 #include <algorithm>

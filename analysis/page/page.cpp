@@ -2,7 +2,7 @@
 #include "analysis/page/page.hpp"
 
 #include "analysis/metrics/verdict_table.hpp"
-#include "analysis/output/csv_file.hpp"
+#include "analysis/output/frame.hpp"
 #include "analysis/output/number_text.hpp"
 #include "analysis/page/html.hpp"
 #include "analysis/tables/tables.hpp"

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <tuple>
 #include <vector>
 
@@ -41,5 +42,36 @@ struct IntervalMatch {
 /// counts by its digits: 1.3 stands for anything from 1.25 to 1.35. Throws StudyError where not
 /// 0 <= lower < upper.
 std::vector<IntervalMatch> match_interval(double lower, double upper, std::size_t most = 5);
+
+/// The planned study (STATISTICS 17).
+struct NeesTest {
+  std::uint64_t dimension = 3;  ///< of the error
+  double level = 0.95;          ///< probability that a consistent filter is not rejected
+  std::uint64_t scans = 1;      ///< independent ones in a run; 1: errors never change within a run
+};
+
+/// Power of a study with so many runs, for a filter with squared errors off by one factor at all
+/// scans and in all components. Both probabilities are lower bounds.
+class NeesPlan {
+ public:
+  /// Throws StudyError where `test` has no meaning: up to 100,000 scans.
+  explicit NeesPlan(const NeesTest& test);
+
+  /// Probability that `runs` runs show the ratio to differ from 1, on the side on which it does.
+  double found(double ratio, std::uint64_t runs) const;
+  /// Probability that `runs` runs show a consistent filter to be consistent within `within`.
+  double shown(double within, std::uint64_t runs) const;
+  /// The fewest runs with at least this probability of either. Throws StudyError where the question
+  /// has no meaning, or needs more than kMostPlannedRuns.
+  std::uint64_t runs_to_find(double ratio, double power) const;
+  std::uint64_t runs_to_show(double within, double power) const;
+
+ private:
+  std::uint64_t fewest(const std::function<bool(std::uint64_t)>& is_enough) const;
+
+  NeesTest test_;
+};
+inline constexpr std::uint64_t kMostPlannedScans = 100'000;
+inline constexpr std::uint64_t kMostPlannedRuns = 1'000'000'000;
 
 }  // namespace montecarta::analysis

@@ -2,7 +2,7 @@
 #include "analysis/metrics/metric.hpp"
 #include "analysis/metrics/references.hpp"
 #include "analysis/metrics/verdict_table.hpp"
-#include "analysis/output/csv_file.hpp"
+#include "analysis/output/frame.hpp"
 #include "analysis/tables/tables.hpp"
 #include "engine/records/h5.hpp"
 

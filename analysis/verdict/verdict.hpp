@@ -3,14 +3,85 @@
 
 #include "analysis/data/study_settings.hpp"
 #include "analysis/statistics/nees_bounds.hpp"
-#include "analysis/verdict/family.hpp"
+#include "analysis/statistics/spread.hpp"
 
+#include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 namespace montecarta::analysis {
+
+/// Subject of a family of tests (STATISTICS 5).
+enum class Family {
+  size,         ///< squared errors of all components at all scans
+  component,    ///< squared errors of one component at all scans
+  stretch,      ///< squared errors of all components in one eighth of the scans
+  scan,         ///< squared errors of all components at one scan
+  bias,         ///< mean error of one component, in deviations
+  correlation,  ///< between two components, beyond the reported one
+  between_runs  ///< standard deviation of the scales that runs have of their own
+};
+
+inline constexpr std::array kFamilies = {
+    Family::size, Family::component,   Family::stretch,     Family::scan,
+    Family::bias, Family::correlation, Family::between_runs};
+
+/// Returns whether members of a family are ratios of squared errors to the expected ones; else they
+/// are numbers that are zero if the filter is consistent.
+constexpr bool is_ratio(Family family) {
+  return family == Family::size || family == Family::component || family == Family::stretch ||
+         family == Family::scan;
+}
+
+/// "between runs", for readers.
+std::string name_of(Family family);
+/// "between_runs", for files.
+std::string key_of(Family family);
+
+/// One test of a family.
+struct Member {
+  std::string name = {};             ///< "heading", "forward and left"; empty where times name it
+  double from = kNaN, to = kNaN;     ///< [s] of a stretch or a scan
+  double estimate = kNaN;            ///< ratio, or number that should be zero
+  Interval interval = {kNaN, kNaN};  ///< of this member alone
+  Interval simultaneous = {kNaN, kNaN};  ///< all members of all families hold with the level
+  double p = kNaN;                       ///< two-sided, of this member alone
+};
+
+/// "heading", "12 s to 24 s", "at 12.4 s"
+std::string name_of(const Member& member);
+
+/// A family with its members, and whether it rejects that the filter is consistent.
+struct FamilyTest {
+  Family family = Family::size;
+  std::vector<Member> members = {};
+  double p = 1.0;           ///< of the family: Bonferroni over members, Holm over families
+  double member_limit = 0;  ///< largest p of a member that is shown to be off
+  bool is_rejected = false;
+
+  /// The member of the least p-value.
+  const Member& strongest() const;
+  /// Returns whether `member` is shown to differ from its expectation.
+  bool is_shown(const Member& member) const { return is_rejected && member.p <= member_limit; }
+};
+
+/// Corrects the p-values of families of tests that are judged together at `level`: Bonferroni over
+/// the members of each, Holm (1979) over the families. Fills p, member_limit and is_rejected.
+void judge_together(std::vector<FamilyTest>& families, double level);
+
+/// Share of the error probability `alpha` that interim analyses have spent when `information`, in
+/// [0, 1], of the runs are there: 2 - 2 Phi(z / sqrt(information)), which resembles the boundaries
+/// of O'Brien and Fleming (Lan and DeMets 1983).
+double spent(double alpha, double information);
+
+/// Level of the interim analysis of `runs` runs, where `looks` are the increasing numbers of runs
+/// of all interim analyses. Each has the error probability that is spent since the one before, so
+/// that together they reject with a probability of at most 1 - level, for any dependence between
+/// them. Between two looks it is the level of the next one. Without looks it is `level`.
+double level_of_look(double level, std::span<const std::uint64_t> looks, std::uint64_t runs);
 
 enum class Answer {
   untested,      ///< no covariance is stored, or no run is complete

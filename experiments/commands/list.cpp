@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/metrics/score.hpp"
+#include "analysis/metrics/cell_analysis.hpp"
 #include "engine/errors.hpp"
 #include "engine/records/columns.hpp"
 #include "engine/wrapped_text.hpp"

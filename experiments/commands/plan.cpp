@@ -2,7 +2,7 @@
 #include "analysis/data/study_settings.hpp"
 #include "analysis/output/number_text.hpp"
 #include "analysis/output/text_table.hpp"
-#include "analysis/statistics/nees_power.hpp"
+#include "analysis/statistics/nees_bounds.hpp"
 #include "engine/wrapped_text.hpp"
 #include "experiments/commands/commands.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Law: other readers of a result file find the ANEES that we find.
-#include "analysis/output/csv_file.hpp"
+#include "analysis/output/frame.hpp"
 #include "analysis/statistics/nees_bounds.hpp"
 #include "tests/analysis/synthetic_result.hpp"
 #include "tests/doubles/csv_table.hpp"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/map_errors.hpp"
 
+#include "analysis/metrics/cell_analysis.hpp"
 #include "analysis/metrics/measured_run.hpp"
 #include "analysis/metrics/references.hpp"
-#include "analysis/metrics/score.hpp"
 #include "analysis/statistics/spread.hpp"
 #include "engine/numbers/angle.hpp"
 #include "engine/random/stream.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/proper_scores.hpp"
 
-#include "analysis/metrics/score.hpp"
+#include "analysis/metrics/cell_analysis.hpp"
 #include "analysis/metrics/study_analysis.hpp"
 #include "analysis/statistics/spread.hpp"
 #include "tests/analysis/reported.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/metrics/cell_analysis.hpp"
 #include "analysis/metrics/measured_run.hpp"
 #include "analysis/metrics/references.hpp"
-#include "analysis/metrics/score.hpp"
 #include "engine/random/stream.hpp"
 #include "tests/analysis/synthetic_runs.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/figures/path_figure.hpp"
-#include "analysis/output/csv_file.hpp"
 #include "analysis/output/figure.hpp"
+#include "analysis/output/frame.hpp"
 #include "analysis/output/gnuplot.hpp"
 #include "analysis/statistics/spread.hpp"
 #include "engine/errors.hpp"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/statistics/nees_bounds.hpp"
 
-#include "analysis/statistics/nees_power.hpp"
 #include "engine/errors.hpp"
 #include "tests/analysis/verdict_studies.hpp"
 #include "tests/doubles/csv_table.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/statistics/squares_law.hpp"
 
-#include "analysis/verdict/family.hpp"
+#include "analysis/verdict/verdict.hpp"
 #include "analysis/verdict/whole_error.hpp"
 #include "engine/random/stream.hpp"
 

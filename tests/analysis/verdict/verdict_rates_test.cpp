@@ -2,7 +2,7 @@
 // Promises of the verdict, checked by simulated studies. This prints the tables of STATISTICS 5 and
 // 18, and without the variable a sample of their lines:
 //   MONTECARTA_STUDIES=2000 build/analysis_tests --gtest_filter='*SlowVerdict*'
-#include "analysis/verdict/family.hpp"
+#include "analysis/verdict/verdict.hpp"
 #include "engine/runs/monte_carlo.hpp"
 #include "tests/analysis/verdict_studies.hpp"
 
