@@ -26,6 +26,28 @@ std::vector<DrawnCurve> drawn_cells(const StudyAnalysis& study, const CellValues
   return drawn;
 }
 
+/// The label of a cell without its number of particles: "fastslam2_gps" of "fastslam2_m100_gps".
+std::string label_without_particles(const CellAnalysis& cell) {
+  const std::string part = "_m" + std::to_string(cell.particles);
+  std::string label = cell.label;
+  for (std::size_t at = 0; (at = label.find(part, at)) != label.npos; ++at) {
+    const std::size_t end = at + part.size();
+    if (end != label.size() && label[end] != '_') continue;
+    return label.erase(at, part.size());
+  }
+  return label;
+}
+
+/// The labels of all cells without their numbers of particles, each once.
+std::vector<std::string> filter_labels(const StudyAnalysis& study) {
+  std::vector<std::string> labels;
+  for (const CellAnalysis& cell : study.cells) {
+    const std::string label = label_without_particles(cell);
+    if (std::ranges::find(labels, label) == labels.end()) labels.push_back(label);
+  }
+  return labels;
+}
+
 /// A curve for every filter, so that one legend serves all panels; without values where a filter
 /// has no cell of so many particles.
 Panel panel_of(std::size_t particles, const std::vector<DrawnCurve>& drawn,
@@ -78,26 +100,6 @@ std::vector<Section> table_section(Section section, const TextTable& table, cons
   section.add(section.name, table);
   section.add_notes("notes", notes);
   return {section};
-}
-
-std::string label_without_particles(const CellAnalysis& cell) {
-  const std::string part = "_m" + std::to_string(cell.particles);
-  std::string label = cell.label;
-  for (std::size_t at = 0; (at = label.find(part, at)) != label.npos; ++at) {
-    const std::size_t end = at + part.size();
-    if (end != label.size() && label[end] != '_') continue;
-    return label.erase(at, part.size());
-  }
-  return label;
-}
-
-std::vector<std::string> filter_labels(const StudyAnalysis& study) {
-  std::vector<std::string> labels;
-  for (const CellAnalysis& cell : study.cells) {
-    const std::string label = label_without_particles(cell);
-    if (std::ranges::find(labels, label) == labels.end()) labels.push_back(label);
-  }
-  return labels;
 }
 
 std::vector<Curve> cell_curves(const StudyAnalysis& study, const CellValues& values_of) {

@@ -34,13 +34,6 @@ TextTable cell_table(const StudyAnalysis& study, const CellEntries& entries_of);
 std::vector<Section> table_section(Section section, const TextTable& table,
                                    const Values& notes = {});
 
-/// The label of a cell without its number of particles: "fastslam2_gps" of "fastslam2_m100_gps".
-std::string label_without_particles(const CellAnalysis& cell);
-
-/// These labels of all cells, each once. If colours stand for filters, the index in this list
-/// selects the colour.
-std::vector<std::string> filter_labels(const StudyAnalysis& study);
-
 /// The values of a cell over time; empty where it has none.
 using CellValues = std::function<std::vector<double>(const CellAnalysis&)>;
 

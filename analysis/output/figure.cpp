@@ -6,8 +6,9 @@
 #include "analysis/output/number_text.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstdio>
+#include <span>
 #include <tuple>
 #include <utility>
 

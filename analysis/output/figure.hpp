@@ -4,11 +4,9 @@
 #include "analysis/output/frame.hpp"
 #include "analysis/output/prose.hpp"
 
-#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <limits>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <iterator>
 #include <map>
-#include <memory>
 #include <utility>
 
 namespace montecarta::analysis {
