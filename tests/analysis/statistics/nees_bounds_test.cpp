@@ -45,46 +45,6 @@ TEST(NeesBounds, EqualTheGoldenValuesAndRefuseWhatIsNoTest) {
   }
 }
 
-void expect_match(const IntervalMatch& match, std::uint64_t runs, std::uint64_t dimension,
-                  double level) {
-  EXPECT_EQ(match.runs, runs);
-  EXPECT_EQ(match.dimension, dimension);
-  EXPECT_DOUBLE_EQ(match.level, level);
-}
-
-// Havangi prints this interval as 95 %: it is the one of 90 % (STATISTICS 3).
-TEST(MatchInterval, FindsHavangisIntervalAtNinetyPercent) {
-  const auto matches = match_interval(1.3, 2.79);
-  ASSERT_FALSE(matches.empty());
-  expect_match(matches[0], 20, 2, 0.90);
-  EXPECT_TRUE(matches[0].within_digits());
-  EXPECT_NEAR(matches[0].digits, 0.0254651598 / 0.05, 1e-7);
-}
-
-TEST(MatchInterval, FindsAnkishansInterval) {
-  const auto matches = match_interval(2.19, 3.93);
-  ASSERT_FALSE(matches.empty());
-  expect_match(matches[0], 30, 3, 0.95);
-  EXPECT_NEAR(matches[0].exact.upper, 3.9378630854, 1e-9);
-}
-
-TEST(MatchInterval, FindsEveryGoldenInterval) {
-  for (const auto& golden : golden_bounds()) {
-    const auto matches = match_interval(golden.lower, golden.upper);
-    ASSERT_FALSE(matches.empty());
-    expect_match(matches[0], golden.runs, golden.dimension, golden.level);
-    EXPECT_TRUE(matches[0].within_digits());
-  }
-}
-
-TEST(MatchInterval, SaysWhenNothingFitsAndRefusesWhatIsNoInterval) {
-  const auto matches = match_interval(0.512345, 9.123456);
-  ASSERT_FALSE(matches.empty());
-  EXPECT_FALSE(matches[0].within_digits());
-  EXPECT_THROW(match_interval(3.94, 2.19), StudyError);
-  EXPECT_THROW(match_interval(-1.0, 2.0), StudyError);
-}
-
 // Where runs are many all is normal: the average has a deviation of sqrt(2 / (3 x 100 N)), one of
 // seven families leaves 2.69 of it on either side, and 90 % is 1.2816 of them.
 TEST(NeesPlan, IsTheNormalLawWhereRunsAreMany) {
