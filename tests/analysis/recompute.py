@@ -235,14 +235,16 @@ def holm(p):
 
 
 def wins(cell, other, metric):
-    """(differences of common complete runs, won, lost); a failed run is lost to a complete one."""
+    """(differences of common complete runs, won, lost). A failed run is lost to a complete one,
+    unless neither a high nor a low value is good."""
     mine, its = cell.scores[metric], other.scores[metric]
     both = np.intersect1d(cell.runs, other.runs)
     difference = mine[np.searchsorted(cell.runs, both)] - its[np.searchsorted(other.runs, both)]
-    only_mine = np.count_nonzero((cell.status == 1) & (other.status == 2))
-    only_its = np.count_nonzero((cell.status == 2) & (other.status == 1))
-    won = np.count_nonzero(difference < 0) + only_mine
-    lost = np.count_nonzero(difference > 0) + only_its
+    won = np.count_nonzero(difference < 0)
+    lost = np.count_nonzero(difference > 0)
+    if not metric.startswith("nees"):
+        won += np.count_nonzero((cell.status == 1) & (other.status == 2))
+        lost += np.count_nonzero((cell.status == 2) & (other.status == 1))
     return difference, won, lost
 
 
