@@ -139,11 +139,12 @@ void CsvRows::read_header(std::span<const std::string> headers) {
 bool CsvRows::next() {
   const std::optional<std::string_view> row = take_row();
   if (!row) return false;
-  split_into(*row, ',', fields_);
-  if (fields_.size() != columns_.size()) {
-    refuse(std::to_string(fields_.size()) + " fields (a row is " + joined(columns_, ",") +
+  const auto fields = static_cast<std::size_t>(std::ranges::count(*row, ',')) + 1;
+  if (fields != columns_.size()) {
+    refuse(std::to_string(fields) + " fields (a row is " + joined(columns_, ",") +
            "): write one field for each column");
   }
+  split_into(*row, ',', fields_);
   return has_rows_ = true;
 }
 

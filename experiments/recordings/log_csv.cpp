@@ -83,8 +83,20 @@ double heading_in(const CsvRows& rows, std::size_t field) {
   return limited(rows, field, "heading", 1e3 * kPi, "radians");
 }
 
-double component_in(const CsvRows& rows, std::size_t field, const Component& component) {
-  return limited(rows, field, component.name, component.most, component.limit);
+/// Why this cannot be a control or a component of a detection; empty if it can.
+std::string fault_of(double value, Quantity quantity) {
+  const Component& component = component_of(quantity);
+  const bool is_too_near = quantity == Quantity::range && value <= 0.0;
+  if (std::abs(value) <= component.most && !is_too_near) return {};
+  return std::string(component.name) + " " + to_text(value) + " (" +
+         (is_too_near ? "a detection is farther than 0 m" : component.limit) + ")";
+}
+
+double quantity_in(const CsvRows& rows, std::size_t field, Quantity quantity) {
+  const double value = rows.number(field, component_of(quantity).name);
+  const std::string fault = fault_of(value, quantity);
+  if (!fault.empty()) rows.refuse(fault + ": correct it");
+  return value;
 }
 
 void read_start(const fs::path& path, DriveLog& log) {
@@ -113,7 +125,7 @@ void read_odometry(const fs::path& path, DriveLog& log) {
   while (rows.next()) {
     Odometry& odometry = log.odometry.emplace_back(Odometry{time_in(rows), {}});
     for (std::size_t c = 0; c < log.controls.size(); ++c)
-      odometry.control[c] = component_in(rows, c + 1, component_of(log.controls[c]));
+      odometry.control[c] = quantity_in(rows, c + 1, log.controls[c]);
   }
   rows.expect_some();
 }
@@ -131,24 +143,20 @@ std::optional<std::int32_t> identity_in(const CsvRows& rows, std::size_t column)
 
 Detection detection_in(const CsvRows& rows, std::span<const Quantity> components, bool identified) {
   Detection detection{.values = {}, .identity = Detection::kUnidentified};
-  for (std::size_t i = 0; i < components.size(); ++i) {
-    detection[i] = component_in(rows, i + 1, component_of(components[i]));
-    if (components[i] != Quantity::range || detection[i] > 0.0) continue;
-    rows.refuse("range " + to_text(detection[i]) +
-                " (a detection is farther than 0 m): correct it");
-  }
+  for (std::size_t i = 0; i < components.size(); ++i)
+    detection[i] = quantity_in(rows, i + 1, components[i]);
   if (!identified) return detection;
   detection.identity = identity_in(rows, components.size() + 1).value_or(Detection::kClutter);
   return detection;
 }
 
-/// Refuses a detection of a landmark that the scan has already, or that does not exist.
-void check_identity(const CsvRows& rows, std::int32_t identity, const DriveLog& log) {
+/// Refuses a detection of a landmark that the scan has already `seen`, or that does not exist.
+void check_identity(const CsvRows& rows, std::int32_t identity, std::size_t known,
+                    std::set<std::int32_t>& seen) {
   if (identity < 0) return;
   const std::string name = "identity " + std::to_string(identity);
-  if (std::ranges::count(log.scans.back().detections, identity, &Detection::identity) > 0)
+  if (!seen.insert(identity).second)
     rows.refuse(name + " twice (a scan sees a landmark once): correct one of the two");
-  const std::size_t known = log.landmarks.size();
   if (known == 0 || static_cast<std::size_t>(identity) < known) return;
   rows.refuse(name + " of " + std::to_string(known) +
               " landmarks (they count from 0): give all landmarks, or none");
@@ -182,6 +190,7 @@ void read_scans(const fs::path& path, DriveLog& log) {
   });
   const std::size_t fields = log.components.size() + (identified ? 1 : 0);
   std::vector<LoggedScan>& scans = log.scans;
+  std::set<std::int32_t> seen;  // in the last scan
   while (rows.next()) {
     const double time = time_in(rows, CsvRows::Order::not_earlier);
     const bool nothing = is_empty_scan(rows, fields);
@@ -190,10 +199,13 @@ void read_scans(const fs::path& path, DriveLog& log) {
       rows.refuse("a scan at " + to_text(time) +
                   " s that saw nothing has other rows (it is one row): delete one of them");
     }
-    if (!again) scans.push_back({time, {}});
+    if (!again) {
+      scans.push_back({time, {}});
+      seen.clear();
+    }
     if (nothing) continue;
     const Detection detection = detection_in(rows, log.components, identified);
-    check_identity(rows, detection.identity, log);
+    check_identity(rows, detection.identity, log.landmarks.size(), seen);
     scans.back().detections.push_back(detection);
   }
   rows.expect_some();
@@ -209,7 +221,11 @@ std::vector<Eigen::Vector2d> read_landmarks(const fs::path& path) {
     const auto identity = rows.header() == 1 ? identity_in(rows, 2).value_or(-1) : next;
     landmarks.push_back({identity, point_in(rows, 0)});
   }
-  rows.expect_some();
+  if (landmarks.empty()) {
+    throw StudyError(path.string() +
+                     ": no rows (a file of landmarks has one for each): add them, "
+                     "or remove the file");
+  }
   std::ranges::stable_sort(landmarks, {}, [](const auto& landmark) { return landmark.first; });
   std::vector<Eigen::Vector2d> places;
   for (const auto& [identity, place] : landmarks) {
@@ -250,7 +266,7 @@ std::vector<ReferencePath> read_references(const fs::path& folder) {
     const std::string name = reference_in(entry.path());
     if (name.empty()) continue;
     if (!is_name(name)) {
-      throw StudyError(folder.string() + ": '" + excerpt(name) +
+      throw StudyError(entry.path().string() + ": '" + excerpt(name) +
                        "' is no name of a reference (letters, digits, _ and -): rename it");
     }
     if (!names.insert(name).second) {
@@ -331,11 +347,23 @@ class Table {
   std::string text_;
 };
 
-Table odometry_table(const DriveLog& log) {
+/// Throws StudyError for numbers that read_log_csv() would refuse.
+void expect_readable(std::span<const double> values, std::span<const Quantity> quantities,
+                     const fs::path& file) {
+  for (std::size_t i = 0; i < quantities.size(); ++i) {
+    const std::string fault = fault_of(values[i], quantities[i]);
+    if (fault.empty()) continue;
+    throw StudyError(file.string() + ": " + fault +
+                     ", so that the log could not be read: give the study less noise");
+  }
+}
+
+Table odometry_table(const DriveLog& log, const fs::path& file) {
   Table table(header_of(log.controls));
   for (const auto& [time, control] : log.odometry) {
     std::array<double, 1 + Control::kMost> row{time};
     std::ranges::copy(control.values, row.begin() + 1);
+    expect_readable(control.values, log.controls, file);
     table.add(std::span(row).first(1 + log.controls.size()));
   }
   return table;
@@ -351,7 +379,7 @@ std::string identity_field(const Detection& detection) {
   return detection.identity < 0 ? "," : "," + std::to_string(detection.identity);
 }
 
-Table detection_table(const DriveLog& log) {
+Table detection_table(const DriveLog& log, const fs::path& file) {
   const bool identified = is_identified(log);
   const std::size_t n = log.components.size();
   Table table(detection_headers(log.components)[identified ? 1 : 0]);
@@ -360,6 +388,7 @@ Table detection_table(const DriveLog& log) {
     for (const Detection& detection : detections) {
       std::array<double, 1 + Detection::kMost> row{time};
       std::ranges::copy(detection.values, row.begin() + 1);
+      expect_readable(detection.values, log.components, file);
       table.add(std::span(row).first(1 + n), identified ? identity_field(detection) : "");
     }
   }
@@ -380,13 +409,17 @@ void write_log_csv(const DriveLog& log, const fs::path& folder) {
 }
 
 void write_log_csv(const DriveLog& log, const fs::path& folder, const fs::path& truth_folder) {
+  const fs::path odometry_file = folder / "odometry.csv",
+                 detection_file = folder / "detections.csv";
+  const Table odometry = odometry_table(log, odometry_file);
+  const Table detections = detection_table(log, detection_file);
   make_folder(folder);
   make_folder(truth_folder);
   Table start(kStartHeader[0]);
   start.add({log.start_time, log.start.x, log.start.y, log.start.heading});
   write_text(folder / "start.csv", start.text());
-  write_text(folder / "odometry.csv", odometry_table(log).text());
-  write_text(folder / "detections.csv", detection_table(log).text());
+  write_text(odometry_file, odometry.text());
+  write_text(detection_file, detections.text());
   for (const ReferencePath& reference : log.references) {
     write_text(truth_folder / file_of_reference(reference.name), csv_of(reference));
   }

@@ -26,7 +26,8 @@ DriveLog read_log_csv(const std::filesystem::path& folder);
 
 /// Writes `log` to a new or empty folder. Reading it gives the same log, bit for bit, if its
 /// references are in the order in which they are read. Throws StudyError if the folder is not
-/// empty, and RunError if writing fails.
+/// empty, or if a control or a detection has a number that the reader refuses, and RunError if
+/// writing fails.
 void write_log_csv(const DriveLog& log, const std::filesystem::path& folder);
 
 /// The same, but it writes references and landmarks, which an estimator must not see, to a separate

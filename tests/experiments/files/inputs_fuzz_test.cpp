@@ -14,6 +14,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -83,7 +84,22 @@ TEST(InputsFuzz, Study) {
                   [](const fs::path& path) { resolved_text(read_study(path)); });
 }
 
-// The reader returns a log, or names the fault.
+void expect_order_and_limits(const DriveLog& log) {
+  EXPECT_TRUE(std::ranges::is_sorted(log.odometry, std::ranges::less_equal(), &Odometry::time));
+  EXPECT_TRUE(std::ranges::is_sorted(log.scans, std::ranges::less_equal(), &LoggedScan::time));
+  for (const Odometry& odometry : log.odometry) {
+    for (std::size_t c = 0; c < log.controls.size(); ++c)
+      EXPECT_LE(std::abs(odometry.control[c]), component_of(log.controls[c]).most);
+  }
+  for (const LoggedScan& scan : log.scans) {
+    for (const Detection& detection : scan.detections) {
+      for (std::size_t i = 0; i < log.components.size(); ++i)
+        EXPECT_LE(std::abs(detection[i]), component_of(log.components[i]).most);
+    }
+  }
+}
+
+// The reader returns a log that can be, or names the fault.
 TEST(ReadersFuzz, CsvLogs) {
   const ScratchFolder folder;
   write_log_csv(full_log(), folder / "log");
@@ -91,7 +107,8 @@ TEST(ReadersFuzz, CsvLogs) {
   std::vector<fs::path> files(fs::directory_iterator(folder / "log"), {});
   std::ranges::sort(files);
   for (const fs::path& path : files) {
-    count += refused(path, (folder / "log").string(), 200, [&] { read_log_csv(folder / "log"); });
+    count += refused(path, (folder / "log").string(), 200,
+                     [&] { expect_order_and_limits(read_log_csv(folder / "log")); });
   }
   EXPECT_GT(count, 300U);
 }

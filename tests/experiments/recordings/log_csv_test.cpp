@@ -111,6 +111,19 @@ TEST_F(LogCsv, WritesOnlyToAnEmptyFolder) {
               HasSubstr("not empty"));
 }
 
+TEST_F(LogCsv, WritesNothingThatItCouldNotRead) {
+  DriveLog log = full_log();
+  log.odometry[1].control[1] = 2.0;
+  const std::filesystem::path folder = folder_ / "far";
+  EXPECT_THAT(complaint_of([&] { write_log_csv(log, folder); }),
+              AllOf(HasSubstr("odometry.csv: steer 2 ("), HasSubstr("less noise")));
+  log = full_log();
+  log.scans[1].detections[0][0] = -0.5;
+  EXPECT_THAT(complaint_of([&] { write_log_csv(log, folder); }),
+              HasSubstr("detections.csv: range -0.5 ("));
+  EXPECT_FALSE(std::filesystem::exists(folder));
+}
+
 TEST_F(LogCsv, NamesFileAndLineOfAMistake) {
   const std::string odometry = "time_s,speed_mps,steer_rad\n";
   const std::string scans = "time_s,range_m,bearing_rad,identity\n";
