@@ -257,8 +257,10 @@ std::string CellComparison::verdict(double level) const {
   const double other = side * disadvantage(*score, interval.upper, 0.0);
   if (!has_heavy_tail && one > 0.0 && other > 0.0) return "mixed";
   if (!has_heavy_tail && one < 0.0 && other < 0.0) return word;
-  const std::size_t others = ahead > 0 ? wins.lost + wins.tied : wins.won + wins.tied;
-  return word + (others == 0 ? " in all runs" : " in most runs");
+  const std::size_t agreeing = ahead > 0 ? wins.won : wins.lost;
+  return word + (agreeing == pairs && without + baseline_without + neither + unpaired == 0
+                     ? " in all runs"
+                     : " in most runs");
 }
 
 double disadvantage(const Score& score, double left, double right) {
