@@ -201,7 +201,7 @@ TEST_P(SlowSeveralDrives, RejectAConsistentFilterInFivePercentOfStudiesAtMost) {
   const auto [drives, dimension, slow] = GetParam();
   const bool is_sample = dimension == 3 && slow == 1.0;
   if (!is_sample && !is_table_wanted()) GTEST_SKIP() << kHowToGetTheTable;
-  const std::uint64_t studies = studies_of_a_line(drives < 20 ? 200 : 100);
+  const std::uint64_t studies = studies_of_a_line(200);
   std::printf("%d drives, %d components, slow part %.1f\nmemory  above [%%]  below  upper/lower\n",
               static_cast<int>(drives), static_cast<int>(dimension), slow);
   for (const double memory : {1.0, 10.0, 100.0, 1e12}) {

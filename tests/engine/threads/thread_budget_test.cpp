@@ -6,6 +6,7 @@
 #include "tests/doubles/matchers.hpp"
 #include "tests/doubles/scratch_folder.hpp"
 
+#include <array>
 #include <cstdlib>
 #include <fstream>
 #include <limits>
@@ -17,25 +18,34 @@ namespace {
 
 constexpr double kNoQuota = std::numeric_limits<double>::infinity();
 
-/// Leaves no variable set for other tests.
+/// Leaves the variables as they were.
 class ThreadBudget : public testing::Test {
  protected:
-  ~ThreadBudget() override { unset(); }
+  ThreadBudget() {
+    for (const char* name : kVariables) {
+      if (const char* value = std::getenv(name)) before_[name] = value;
+    }
+  }
+  ~ThreadBudget() override { set_only(before_); }
 
   /// The budget of a process on 6 processors with these variables set.
   static int budget(const std::map<std::string, std::string>& variables,
                     const std::optional<std::string>& option = std::nullopt,
                     double quota = kNoQuota) {
-    unset();
-    for (const auto& [name, value] : variables) ::setenv(name.c_str(), value.c_str(), 1);
+    set_only(variables);
     return thread_budget(option, CpuLimits{6, quota});
   }
 
  private:
-  static void unset() {
-    for (const char* name : {"MONTECARTA_THREADS", "SLURM_CPUS_PER_TASK", "OMP_NUM_THREADS"})
-      ::unsetenv(name);
+  static constexpr std::array kVariables = {"MONTECARTA_THREADS", "SLURM_CPUS_PER_TASK",
+                                            "OMP_NUM_THREADS"};
+
+  static void set_only(const std::map<std::string, std::string>& variables) {
+    for (const char* name : kVariables) ::unsetenv(name);
+    for (const auto& [name, value] : variables) ::setenv(name.c_str(), value.c_str(), 1);
   }
+
+  std::map<std::string, std::string> before_;
 };
 
 TEST_F(ThreadBudget, TakesTheFirstThatIsSetWithinTheQuota) {

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -112,6 +113,22 @@ Case robocentric(std::size_t landmarks, std::size_t scans, double least) {
   return one;
 }
 
+/// The covariance of the pose and of all landmarks that are in the map.
+void expect_positive_definite(const SlamFilter& filter, std::size_t landmarks) {
+  const auto joint = filter.joint(landmarks);
+  if (!joint) return;
+  std::vector<Eigen::Index> known;
+  for (Eigen::Index i = 0; i < joint->mean.size(); ++i) {
+    if (!std::isnan(joint->mean(i))) known.push_back(i);
+  }
+  const Eigen::MatrixXd P = joint->covariance(known, known);
+  const Eigen::VectorXd scale = P.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd correlations = scale.asDiagonal() * P * scale.asDiagonal();
+  const Eigen::LLT<Eigen::MatrixXd> factor(correlations);
+  EXPECT_EQ(factor.info(), Eigen::Success);
+  EXPECT_GT(factor.matrixLLT().diagonal().minCoeff(), 1e-3);
+}
+
 class AsPublished : public testing::TestWithParam<Case> {};
 
 TEST_P(AsPublished, SlowEqualsTheLiteralFilter) {
@@ -129,6 +146,7 @@ TEST_P(AsPublished, SlowEqualsTheLiteralFilter) {
   });
   EXPECT_GE(filter->report().map_size, least);
   EXPECT_EQ(filter->report().numerical_faults, 0U);
+  expect_positive_definite(*filter, settings.landmarks);
   if (!is_in_map) return;
   std::vector<std::optional<LandmarkEstimate>> map(settings.landmarks);
   filter->map(map);
