@@ -123,8 +123,8 @@ struct RunCriteria {
   /// Components of the errors that are judged.
   std::vector<std::string> components = {};
   /// {run of the study} Empty if all runs process one drive. Otherwise `times` are those of the
-  /// longest drive, and references and judged_fixes those
-  /// of the first. Such drives are recordings without truth: they have no errors and no NEES.
+  /// longest drive, and references and judged_fixes those of the first. Such drives are recordings
+  /// without truth: they have no errors and no NEES.
   std::vector<DriveCriteria> drives = {};
 
   /// Level of a verdict on so many runs, so that all interim analyses together have `level`.
