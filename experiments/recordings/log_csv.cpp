@@ -219,7 +219,7 @@ std::vector<Eigen::Vector2d> read_landmarks(const fs::path& path) {
   while (rows.next()) {
     const auto next = static_cast<std::int32_t>(landmarks.size());
     const auto identity = rows.header() == 1 ? identity_in(rows, 2).value_or(-1) : next;
-    landmarks.push_back({identity, point_in(rows, 0)});
+    landmarks.emplace_back(identity, point_in(rows, 0));
   }
   if (landmarks.empty()) {
     throw StudyError(path.string() +

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Settings of vehicles and sensors in a study.
+#include "engine/records/result_file.hpp"
 #include "experiments/recordings/log_csv.hpp"
 #include "experiments/study/make_drives.hpp"
 #include "experiments/study/make_plan.hpp"
