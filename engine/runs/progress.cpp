@@ -157,7 +157,8 @@ void Watch::keep_watch() {
 
 void Watch::look() {
   const int signal = interruption_.signal();
-  if (signal != 0 && !stop_.is_set()) {  // said at once, because closing the file may take seconds
+  // Reported at once, because closing the file may take seconds.
+  if (signal != 0 && !stop_.is_set()) {
     std::fputs("\nmontecarta: stopping; finished runs are kept", stderr);
     std::fputs(runs_under_scheduler() ? "\n" : " (a second signal stops at once)\n", stderr);
   }

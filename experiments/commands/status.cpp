@@ -31,7 +31,7 @@ void add_groups(const std::vector<SumGroup>& groups, std::vector<RunStatus>& sta
 }
 
 void add(const ResultFile& file, StudyStatus& study) {
-  if (study.sha256.empty()) {
+  if (study.labels.empty()) {
     study.sha256 = file.study_sha256();
     for (const StoredCell& cell : file.cells()) study.labels.push_back(cell.label);
     study.runs.assign(file.cells().size(), std::vector(file.study_runs(), RunStatus::missing));

@@ -92,7 +92,7 @@ void CsvRows::refuse(const std::string& fault) const { throw StudyError(place() 
 
 void CsvRows::expect_some() const {
   if (has_rows_) return;
-  throw StudyError(path_ + ": no rows behind the header (it is empty): write at least one");
+  throw StudyError(path_ + ": no rows behind the header (a file has at least one): write the rows");
 }
 
 /// A number at the end of a truncated file may be incomplete and still be valid, so a last line

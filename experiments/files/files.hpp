@@ -55,9 +55,9 @@ class CsvRows {
   std::string_view field(std::size_t i) const { return fields_[i]; }
   /// Field i as a finite number; `noun` names the quantity in errors.
   double number(std::size_t i, const char* noun) const;
-  /// Field 0 as a time [s], which must not be earlier than that of the row before. With `later` it
-  /// must be later.
+  /// How the time of a row compares with that of the row before.
   enum class Order { later, not_earlier };
+  /// Field 0 as a time [s]. Throws StudyError if it is not in order.
   double time(Order order = Order::later);
   /// "FILE:LINE" of the current row.
   std::string place() const;

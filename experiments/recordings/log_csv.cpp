@@ -223,8 +223,7 @@ std::vector<Eigen::Vector2d> read_landmarks(const fs::path& path) {
   }
   if (landmarks.empty()) {
     throw StudyError(path.string() +
-                     ": no rows (a file of landmarks has one for each): add them, "
-                     "or remove the file");
+                     ": no rows (every landmark has one): add them, or remove the file");
   }
   std::ranges::stable_sort(landmarks, {}, [](const auto& landmark) { return landmark.first; });
   std::vector<Eigen::Vector2d> places;

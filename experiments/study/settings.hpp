@@ -53,7 +53,7 @@ struct Condition {
 struct Setting : Parameter {
   std::string section = {};
   /// All must hold for the setting to apply: on scenario.kind, then on the vehicle, the sensor or
-  /// the noise of its section. The settings in them stand before it in the table.
+  /// the noise of its section. These settings come earlier in the table.
   std::vector<Condition> conditions = {};
   /// Pairs (kind of scenario, default) for kinds with a default of their own. kFromScenario stands
   /// for the scenario's value of that key, kRequired for no default.
