@@ -122,6 +122,26 @@ TEST(SigmaObservation, InitialisesALandmarkAsFivePointsDo) {
   }
 }
 
+/// Noise so small that the models are linear within it.
+TEST(SigmaObservation, OnLinearModelsEveryTransformIsTheKalmanFilter) {
+  RngStream draw({.seed = 84, .purpose = Draw::test});
+  for (int n = 0; n < 200; ++n) {
+    const double scale = 1e-5;
+    const RandomObservation c(draw, scale);
+    for (const SigmaRule& rule :
+         {unscented_rule(5, 0.9, 2, 0), central_difference_rule(kInterval)}) {
+      PoseGaussian<double> sigma = c.pose, linear = c.pose;
+      Evidence<double> of_bent, of_linear;
+      points_by(rule, c.noise).refine(sigma, c.landmark, c.seen, c.noise, AllLanes(), of_bent);
+      Linearised().refine(linear, c.landmark, c.seen, c.noise, AllLanes(), of_linear);
+      EXPECT_LT(boxminus(sigma.mean, linear.mean).norm(), 1e-3 * scale);
+      EXPECT_LT((symmetric(sigma.covariance) - symmetric(linear.covariance)).norm(),
+                1e-3 * scale * scale);
+      EXPECT_NEAR(of_bent.log_density(), of_linear.log_density(), 1e-2);
+    }
+  }
+}
+
 TEST(SigmaObservation, ALandmarkLeftOutOfTheProposalStaysInTheWeight) {
   RngStream draw({.seed = 85, .purpose = Draw::test});
   const SigmaRule rule = central_difference_rule(kInterval);
@@ -152,24 +172,57 @@ Matrix32 cross_of(const Innovation<double>& v) {
   return C;
 }
 
-/// Hx P Hx' + Hf Sigma Hf' + R with the models' derivatives.
+/// Hx P Hx' + Hf Sigma Hf' + R and its parts, with the models' derivatives.
+struct LinearObservation {
+  Eigen::Matrix2d of_pose, of_map, of_sensor;
+  Matrix32 cross;
+  explicit LinearObservation(const RandomObservation& c) {
+    const auto observation = linearised_observation(c.pose.mean, c.landmark.mean);
+    const Matrix23 Hx = pose_jacobian(observation);
+    const Eigen::Matrix2d Hf = landmark_jacobian(observation);
+    const Eigen::Matrix3d P = symmetric(c.pose.covariance);
+    of_pose = Hx * P * Hx.transpose();
+    of_map = Hf * symmetric(c.landmark.covariance) * Hf.transpose();
+    of_sensor = Vector<2>(c.noise.first, c.noise.second).asDiagonal();
+    cross = P * Hx.transpose();
+  }
+  Eigen::Matrix2d whole() const { return of_pose + of_map + of_sensor; }
+};
+
+TEST(SigmaInnovation, IsThatOfPoseMapAndSensorOnLinearModels) {
+  RngStream draw({.seed = 236, .purpose = Draw::test});
+  for (int n = 0; n < 500; ++n) {
+    const RandomObservation c(draw, 1e-4);
+    const LinearObservation truth(c);
+    const LineOfSight<double> s = line_of_sight(c.pose.mean, c.landmark.mean);
+    for (const SigmaRule& rule :
+         {unscented_rule(5, 0.9, 2, 0), central_difference_rule(kInterval)}) {
+      for (const auto map : {MapUncertainty::on, MapUncertainty::off}) {
+        const auto observation = sigma_observation_of(c.pose.covariance, c.landmark.covariance, s,
+                                                      c.seen, c.noise, rule, map);
+        const Eigen::Matrix2d moving =
+            map == MapUncertainty::on ? truth.whole() : truth.of_pose + truth.of_sensor;
+        EXPECT_LT((covariance_of(observation.whole) - truth.whole()).norm(),
+                  1e-7 * truth.whole().norm());
+        EXPECT_LT((covariance_of(observation.proposal) - moving).norm(), 1e-7 * moving.norm());
+        EXPECT_LT((cross_of(observation.proposal) - truth.cross).norm(), 1e-7 * truth.cross.norm());
+      }
+    }
+  }
+}
+
 TEST(LinearisedInnovation, IsThatOfPoseMapAndSensor) {
   RngStream draw({.seed = 237, .purpose = Draw::test});
   for (int n = 0; n < 500; ++n) {
     const RandomObservation c(draw);
-    const auto observation = linearised_observation(c.pose.mean, c.landmark.mean);
-    const Matrix23 Hx = pose_jacobian(observation);
-    const Eigen::Matrix2d Hf = landmark_jacobian(observation);
-    const Matrix32 cross = symmetric(c.pose.covariance) * Hx.transpose();
-    const Eigen::Matrix2d R = Vector<2>(c.noise.first, c.noise.second).asDiagonal();
-    const Eigen::Matrix2d S = Hf * symmetric(c.landmark.covariance) * Hf.transpose() + R;
-    const Eigen::Matrix2d whole = Hx * cross + S;
+    const LinearObservation truth(c);
     PoseGaussian<double> pose = c.pose;
     Evidence<double> evidence;
     const auto v = Linearised().refine(pose, c.landmark, c.seen, c.noise, AllLanes(), evidence);
-    EXPECT_LT((covariance_of(v) - whole).norm(), 1e-13 * (1 + whole.norm()));
-    EXPECT_LT((cross_of(v) - cross).norm(), 1e-13 * (1 + cross.norm()));
+    EXPECT_LT((covariance_of(v) - truth.whole()).norm(), 1e-13 * (1 + truth.whole().norm()));
+    EXPECT_LT((cross_of(v) - truth.cross).norm(), 1e-13 * (1 + truth.cross.norm()));
     LandmarkGaussian<double> landmark = c.landmark;
+    const Eigen::Matrix2d S = truth.of_map + truth.of_sensor;
     const auto of_known =
         Linearised().update(landmark, c.pose.mean, c.seen, c.noise, AllLanes(), evidence);
     EXPECT_LT((covariance_of(of_known) - S).norm(), 1e-13 * (1 + S.norm()));
