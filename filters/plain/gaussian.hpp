@@ -19,6 +19,9 @@ template <int N>
 using Vector = Eigen::Matrix<double, N, 1>;
 template <int N, int M = N>
 using Matrix = Eigen::Matrix<double, N, M>;
+/// Of any size up to 16 sigma points of eight dimensions, without an allocation.
+using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 8, 1>;
+using SmallMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 8, 16>;
 
 inline Pose as_pose(const Vector<3>& x) { return {x(0), x(1), wrap(x(2))}; }
 inline Vector<3> to_vector(const Pose& pose) { return {pose.x, pose.y, pose.heading}; }
@@ -62,22 +65,21 @@ inline double log_gaussian(const Innovation& v) { return log_gaussian<2>(v.nu, v
 
 /// Lower triangular L with L L' = P. A pivot that is zero but for rounding gives a zero column
 /// (EQUATIONS, Notation).
-template <int N>
-Matrix<N> psd_chol(const Matrix<N>& P) {
-  Matrix<N> L = Matrix<N>::Zero();
-  for (int j = 0; j < N; ++j) {
+inline SmallMatrix psd_chol(const SmallMatrix& P) {
+  SmallMatrix L = SmallMatrix::Zero(P.rows(), P.rows());
+  for (Eigen::Index j = 0; j < P.rows(); ++j) {
     const double pivot = P(j, j) - L.row(j).squaredNorm();
     if (pivot <= 1e-18 * (1.0 + std::abs(P(j, j)))) continue;
     L(j, j) = std::sqrt(pivot);
-    for (int i = j + 1; i < N; ++i) L(i, j) = (P(i, j) - L.row(i).dot(L.row(j))) / L(j, j);
+    for (Eigen::Index i = j + 1; i < P.rows(); ++i)
+      L(i, j) = (P(i, j) - L.row(i).dot(L.row(j))) / L(j, j);
   }
   return L;
 }
 
 /// The square root of P that is lower triangular in the coordinates y = T x, T orthogonal.
-template <int N>
-Matrix<N> chol_in(const Matrix<N>& T, const Matrix<N>& P) {
-  return T.transpose() * psd_chol<N>(T * P * T.transpose());
+inline SmallMatrix chol_in(const SmallMatrix& T, const SmallMatrix& P) {
+  return T.transpose() * psd_chol(T * P * T.transpose());
 }
 
 /// The square root of the covariance of a pose that is lower triangular along, across and about
@@ -85,7 +87,7 @@ Matrix<N> chol_in(const Matrix<N>& T, const Matrix<N>& P) {
 inline Matrix<3> root_along(double heading, const Matrix<3>& P) {
   Matrix<3> T = Matrix<3>::Identity();
   T.topLeftCorner<2, 2>() = Eigen::Rotation2D<double>(-heading).toRotationMatrix();
-  return chol_in<3>(T, P);
+  return chol_in(T, P);
 }
 
 /// A draw from N(mean, root root').

@@ -5,25 +5,30 @@
 #include "filters/plain/landmark.hpp"
 
 #include <cmath>
+#include <functional>
+#include <initializer_list>
 
 /// The two transforms by sigma points of EQUATIONS 3, the models as functions of stacked vectors,
 /// and the coordinates in which the square roots are triangular.
 namespace montecarta::filters::plain {
 
-/// a - b, with component `Angle` (if any) wrapped.
-template <int Angle, int M>
-Vector<M> difference(const Vector<M>& a, const Vector<M>& b) {
-  Vector<M> d = a - b;
-  if constexpr (Angle >= 0) d(Angle) = wrap(d(Angle));
-  return d;
-}
+/// A model as a function of one vector.
+struct Model {
+  std::function<SmallVector(const SmallVector&)> image;
+  Eigen::Index angle = -1;  ///< component of the image that is an angle, -1 if none is
+
+  SmallVector operator()(const SmallVector& x) const { return image(x); }
+  SmallVector wrapped(SmallVector y) const {
+    if (angle >= 0) y(angle) = wrap(y(angle));
+    return y;
+  }
+};
 
 /// Second moments of (x, F(x)).
-template <int N, int M>
 struct Image {
-  Vector<M> mean;
-  Matrix<M> covariance;
-  Matrix<N, M> cross;
+  SmallVector mean;
+  SmallMatrix covariance;
+  SmallMatrix cross;
 };
 
 /// Parameters of the scaled unscented transform (EQUATIONS 7).
@@ -33,95 +38,85 @@ struct Unscented {
   double kappa = 0.0;
 };
 
-/// The scaled unscented transform of `model` (EQUATIONS (3.3), (3.4)): 2N + 1 points around x, from
+/// The scaled unscented transform of `model` (EQUATIONS (3.3), (3.4)): 2n + 1 points around x, from
 /// the columns of the square root S.
-template <int M, int Angle, int N, class Model>
-Image<N, M> unscented(const Vector<N>& x, const Matrix<N>& S, const Unscented& u,
-                      const Model& model) {
-  const double lambda = u.alpha * u.alpha * (N + u.kappa) - N;
-  const double w0 = lambda / (N + lambda), wi = 1.0 / (2.0 * (N + lambda));
+inline Image unscented(const SmallVector& x, const SmallMatrix& S, const Unscented& u,
+                       const Model& model) {
+  const auto n = static_cast<double>(x.size());
+  const double lambda = u.alpha * u.alpha * (n + u.kappa) - n;
+  const double w0 = lambda / (n + lambda), wi = 1.0 / (2.0 * (n + lambda));
   const double wc0 = w0 + 1.0 - u.alpha * u.alpha + u.beta;
-  Matrix<N, 2 * N> X;  // without the centre
-  X << std::sqrt(N + lambda) * S, -std::sqrt(N + lambda) * S;
-  const Vector<M> centre = model(x);
-  Matrix<M, 2 * N> Y;  // as differences from the image of the centre
-  for (int k = 0; k < 2 * N; ++k) {
-    const Vector<N> point = x + X.col(k);
-    Y.col(k) = difference<Angle, M>(model(point), centre);
-  }
-  const Vector<M> shift = wi * Y.rowwise().sum();
+  SmallMatrix X(x.size(), 2 * x.size());  // without the centre
+  X << std::sqrt(n + lambda) * S, -std::sqrt(n + lambda) * S;
+  const SmallVector centre = model(x);
+  SmallMatrix Y(centre.size(), X.cols());  // as differences from the image of the centre
+  for (Eigen::Index k = 0; k < X.cols(); ++k)
+    Y.col(k) = model.wrapped(model(x + X.col(k)) - centre);
+  const SmallVector shift = wi * Y.rowwise().sum();
   Y.colwise() -= shift;
-  Image<N, M> image{centre + shift, wc0 * shift * shift.transpose() + wi * Y * Y.transpose(),
-                    wi * X * Y.transpose()};
-  if constexpr (Angle >= 0) image.mean(Angle) = wrap(image.mean(Angle));
-  return image;
+  return {model.wrapped(centre + shift), wc0 * shift * shift.transpose() + wi * Y * Y.transpose(),
+          wi * X * Y.transpose()};
 }
 
 /// First (A) and second (B) differences of a model, and the mean of its image.
-template <int N, int M>
 struct Differences {
-  Vector<M> mean;
-  Matrix<M, N> A, B;
+  SmallVector mean;
+  SmallMatrix A, B;
 };
 
-/// Central differences of `model` (EQUATIONS (3.5) to (3.7); Ankishan (10) to (14)): 2N + 1 points
+/// Central differences of `model` (EQUATIONS (3.5) to (3.7); Ankishan (10) to (14)): 2n + 1 points
 /// around x, from the columns of the square root S.
-template <int M, int Angle, int N, class Model>
-Differences<N, M> central_differences(const Vector<N>& x, const Matrix<N>& S, double h,
-                                      const Model& model) {
-  const Vector<M> centre = model(x);
-  Differences<N, M> image;
-  Vector<M> sum = Vector<M>::Zero();  // as differences from the image of the centre
-  for (int k = 0; k < N; ++k) {
-    const Vector<N> ahead = x + h * S.col(k), behind = x - h * S.col(k);
-    const Vector<M> plus = difference<Angle, M>(model(ahead), centre);
-    const Vector<M> minus = difference<Angle, M>(model(behind), centre);
+inline Differences central_differences(const SmallVector& x, const SmallMatrix& S, double h,
+                                       const Model& model) {
+  const SmallVector centre = model(x);
+  const SmallMatrix none = SmallMatrix::Zero(centre.size(), x.size());
+  Differences image{SmallVector::Zero(centre.size()), none, none};
+  for (Eigen::Index k = 0; k < x.size(); ++k) {  // as differences from the image of the centre
+    const SmallVector plus = model.wrapped(model(x + h * S.col(k)) - centre);
+    const SmallVector minus = model.wrapped(model(x - h * S.col(k)) - centre);
     image.A.col(k) = (plus - minus) / (2.0 * h);
     image.B.col(k) = std::sqrt(h * h - 1.0) / (2.0 * h * h) * (plus + minus);
-    sum += plus + minus;
+    image.mean += plus + minus;
   }
-  image.mean = centre + 1.0 / (2.0 * h * h) * sum;
-  if constexpr (Angle >= 0) image.mean(Angle) = wrap(image.mean(Angle));
+  image.mean = model.wrapped(centre + 1.0 / (2.0 * h * h) * image.mean);
   return image;
 }
 
-/// f of (pose, noise of C controls, noise of the sensor); the last has no effect.
-template <int C>
-struct MotionModel {
-  Control control;
-  double duration;
-  Vehicle vehicle;
-  Vector<3> operator()(const Vector<5 + C>& x) const {
-    Control u = control;
-    for (int k = 0; k < C; ++k) u[static_cast<std::size_t>(k)] += x(3 + k);
-    return to_vector(move(Pose{x(0), x(1), x(2)}, u, duration, vehicle));
-  }
-};
+/// f of (pose, noise of the controls, noise of the sensor); the last has no effect.
+inline Model motion_model(const Control& control, double duration, const Vehicle& vehicle) {
+  const std::size_t n = controls_of(vehicle).size();
+  return {[=](const SmallVector& x) -> SmallVector {
+            Control u = control;
+            for (std::size_t k = 0; k < n; ++k) u[k] += x(3 + static_cast<Eigen::Index>(k));
+            return to_vector(move(Pose{x(0), x(1), x(2)}, u, duration, vehicle));
+          },
+          2};
+}
 
 /// h of (pose, landmark, noise of the sensor).
-struct ObservationModel {
-  Vector<2> operator()(const Vector<7>& x) const {
-    const auto observation = predicted_observation(Pose{x(0), x(1), x(2)}, Point{x(3), x(4)});
-    return {observation.range + x(5), wrap(observation.bearing + x(6))};
-  }
-};
+inline Model observation_model() {
+  return {[](const SmallVector& x) -> SmallVector {
+            const auto h = predicted_observation(Pose{x(0), x(1), x(2)}, Point{x(3), x(4)});
+            return Vector<2>(h.range + x(5), wrap(h.bearing + x(6)));
+          },
+          1};
+}
 
 /// h of a landmark that is observed from `pose`.
-struct LandmarkModel {
-  Pose pose;
-  Vector<2> operator()(const Vector<2>& f) const {
-    return filters::to_vector(predicted_observation(pose, Point{f(0), f(1)}));
-  }
-};
+inline Model landmark_model(const Pose& pose) {
+  return {[=](const SmallVector& f) -> SmallVector {
+            return filters::to_vector(predicted_observation(pose, Point{f(0), f(1)}));
+          },
+          1};
+}
 
 /// g of (range, bearing) observed from `pose`.
-struct PlaceModel {
-  Pose pose;
-  Vector<2> operator()(const Vector<2>& z) const {
+inline Model place_model(const Pose& pose) {
+  return {[=](const SmallVector& z) -> SmallVector {
     const double angle = pose.heading + z(1);
-    return {pose.x + z(0) * std::cos(angle), pose.y + z(0) * std::sin(angle)};
-  }
-};
+    return Vector<2>(pose.x + z(0) * std::cos(angle), pose.y + z(0) * std::sin(angle));
+  }};
+}
 
 /// Coordinates (heading, x, y).
 inline Matrix<3> heading_first() {
@@ -140,21 +135,21 @@ inline Matrix<3> across_first_with_heading(const Vector<3>& pose, const Vector<2
 }
 
 /// Square roots along the diagonal.
-template <int A, int B, int C>
-Matrix<A + B + C> blocks(const Matrix<A>& a, const Matrix<B>& b, const Matrix<C>& c) {
-  Matrix<A + B + C> S = Matrix<A + B + C>::Zero();
-  S.template topLeftCorner<A, A>() = a;
-  S.template block<B, B>(A, A) = b;
-  S.template bottomRightCorner<C, C>() = c;
+inline SmallMatrix blocks(std::initializer_list<SmallMatrix> roots) {
+  SmallMatrix S(0, 0);
+  for (const SmallMatrix& root : roots) {
+    const Eigen::Index n = S.rows(), m = root.rows();
+    S.conservativeResizeLike(SmallMatrix::Zero(n + m, n + m));
+    S.bottomRightCorner(m, m) = root;
+  }
   return S;
 }
 
-/// (a, b, 0, 0, ...).
-template <int N, int A, int B>
-Vector<N> stacked(const Vector<A>& a, const Vector<B>& b) {
-  Vector<N> x = Vector<N>::Zero();
-  x.template head<A>() = a;
-  x.template segment<B>(A) = b;
+/// (a, b, 0, 0, ...) of length n.
+inline SmallVector stacked(const SmallVector& a, const SmallVector& b, Eigen::Index n) {
+  SmallVector x = SmallVector::Zero(n);
+  x.head(a.size()) = a;
+  x.segment(a.size(), b.size()) = b;
   return x;
 }
 

@@ -25,17 +25,20 @@ class UFastSlam : public FastSlam2 {
 
  protected:
   void move_gaussian(Particle& p, const Control& control, double duration) const override {
-    controls_of(belief_.vehicle).size() == 2 ? move_by_points<2>(p, control, duration)
-                                             : move_by_points<3>(p, control, duration);
+    const SmallMatrix S = blocks({chol_in(heading_first(), p.covariance),
+                                  control_noise(belief_, control).cwiseSqrt(), R_.cwiseSqrt()});
+    const Image image = unscented(stacked(p.pose, {}, S.rows()), S, augmented_,
+                                  motion_model(control, duration, belief_.vehicle));
+    p.pose = image.mean;
+    p.covariance = image.covariance;
   }
 
   /// Kim (8) to (12). The weight always includes the covariance of the landmark (EQUATIONS (7.1)).
   std::optional<Innovation> update_with(Particle& p, const Landmark& landmark,
                                         const Detection& z) const override {
     if (!is_far_enough(p.pose, landmark.mean)) return std::nullopt;
-    const Image<7, 2> whole = observation(p, landmark, landmark.covariance);
-    const Image<7, 2> image =
-        map_uncertainty_ ? whole : observation(p, landmark, Matrix<2>::Zero());
+    const Image whole = observation(p, landmark, landmark.covariance);
+    const Image image = map_uncertainty_ ? whole : observation(p, landmark, Matrix<2>::Zero());
     const Matrix<3, 2> K = gain<3, 2>(image.cross.topRows<3>(), image.covariance);
     p.pose += K * difference(z, image.mean);
     p.pose(2) = wrap(p.pose(2));
@@ -46,51 +49,39 @@ class UFastSlam : public FastSlam2 {
   std::optional<Innovation> innovation(const Vector<3>& pose, const Landmark& landmark,
                                        const Detection& z) const override {
     if (!is_far_enough(pose, landmark.mean)) return std::nullopt;
-    const Image<2, 2> image = observation_from(pose, landmark);
+    const Image image = observation_from(pose, landmark);
     return Innovation{difference(z, image.mean), image.covariance};
   }
 
   /// The update (3.2) of EQUATIONS.
   void update_map(const Vector<3>& pose, Landmark& landmark, const Detection& z) const override {
     if (!is_far_enough(pose, landmark.mean)) return;
-    const Image<2, 2> image = observation_from(pose, landmark);
+    const Image image = observation_from(pose, landmark);
     const Matrix<2> K = gain<2, 2>(image.cross, image.covariance);
     landmark.mean += K * difference(z, image.mean);
     landmark.covariance -= (K * image.covariance * K.transpose()).eval();
   }
 
   Landmark initialised(const Vector<3>& pose, const Detection& z) const override {
-    const auto image = unscented<2, -1>(vector_of(z), Matrix<2>(R_.cwiseSqrt()), landmark_,
-                                        PlaceModel{as_pose(pose)});
+    const Image image =
+        unscented(vector_of(z), R_.cwiseSqrt(), landmark_, place_model(as_pose(pose)));
     return {.mean = image.mean, .covariance = image.covariance};
   }
 
  private:
-  /// Points of (pose, noise of C controls, noise of the sensor) through f.
-  template <int C>
-  void move_by_points(Particle& p, const Control& control, double duration) const {
-    const Matrix<C> root = control_noise(belief_, control).cwiseSqrt();
-    const auto S = blocks<3, C, 2>(chol_in<3>(heading_first(), p.covariance), root, R_.cwiseSqrt());
-    const auto image =
-        unscented<3, 2>(stacked<5 + C>(p.pose, Vector<C>(Vector<C>::Zero())), S, augmented_,
-                        MotionModel<C>{control, duration, belief_.vehicle});
-    p.pose = image.mean;
-    p.covariance = image.covariance;
-  }
-
   /// Points of (pose, landmark, noise of the sensor) through h.
-  Image<7, 2> observation(const Particle& p, const Landmark& landmark,
-                          const Matrix<2>& map_covariance) const {
-    const auto S = blocks<3, 2, 2>(
-        chol_in<3>(across_first_with_heading(p.pose, landmark.mean), p.covariance),
-        chol_in<2>(across_first(p.pose, landmark.mean), map_covariance), R_.cwiseSqrt());
-    return unscented<2, 1>(stacked<7>(p.pose, landmark.mean), S, augmented_, ObservationModel{});
+  Image observation(const Particle& p, const Landmark& landmark,
+                    const Matrix<2>& map_covariance) const {
+    const SmallMatrix S =
+        blocks({chol_in(across_first_with_heading(p.pose, landmark.mean), p.covariance),
+                chol_in(across_first(p.pose, landmark.mean), map_covariance), R_.cwiseSqrt()});
+    return unscented(stacked(p.pose, landmark.mean, 7), S, augmented_, observation_model());
   }
 
   /// Points of the landmark through h from a known pose, plus R.
-  Image<2, 2> observation_from(const Vector<3>& pose, const Landmark& landmark) const {
-    const Matrix<2> S = chol_in<2>(across_first(pose, landmark.mean), landmark.covariance);
-    auto image = unscented<2, 1>(landmark.mean, S, landmark_, LandmarkModel{as_pose(pose)});
+  Image observation_from(const Vector<3>& pose, const Landmark& landmark) const {
+    const SmallMatrix S = chol_in(across_first(pose, landmark.mean), landmark.covariance);
+    Image image = unscented(landmark.mean, S, landmark_, landmark_model(as_pose(pose)));
     image.covariance += R_;
     return image;
   }

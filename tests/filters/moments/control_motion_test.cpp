@@ -39,9 +39,9 @@ struct Case {
     x.head<3>() << pose.x, pose.y, pose.heading;
     const Vector<2> Q(belief.control.sigma[0], belief.control.sigma[1]), R(0.3, 0.1);
     const Eigen::Matrix2d q = Q.asDiagonal(), r = R.asDiagonal();
-    S = blocks<3, 2, 2>(chol_in<3>(heading_first(), symmetric(before.covariance())), q, r);
+    S = blocks({chol_in(heading_first(), symmetric(before.covariance())), q, r});
   }
-  plain::MotionModel<2> model() const { return {control, 0.4, belief.vehicle}; }
+  plain::Model model() const { return plain::motion_model(control, 0.4, belief.vehicle); }
 };
 
 void expect_near(const MotionIncrement& moved, const Vector<3>& mean, const Eigen::Matrix3d& P) {
@@ -54,7 +54,7 @@ TEST(SigmaMotion, EqualsFifteenUnscentedPointsOfSevenDimensions) {
   for (int n = 0; n < 500; ++n) {
     const Case c(draw);
     const auto image =
-        plain::unscented<3, 2>(c.x, c.S, {.alpha = 0.9, .beta = 2.0, .kappa = -2.0}, c.model());
+        plain::unscented(c.x, c.S, {.alpha = 0.9, .beta = 2.0, .kappa = -2.0}, c.model());
     expect_near(
         moved_by_sigma_points(c.before, c.control, 0.4, c.belief, unscented_rule(5, 0.9, 2, 0)),
         image.mean, image.covariance);
@@ -66,7 +66,7 @@ TEST(SigmaMotion, EqualsFifteenCentralDifferencePointsOfSevenDimensions) {
   const double h = std::sqrt(3.0);
   for (int n = 0; n < 500; ++n) {
     const Case c(draw);
-    const auto image = plain::central_differences<3, 2>(c.x, c.S, h, c.model());
+    const auto image = plain::central_differences(c.x, c.S, h, c.model());
     expect_near(
         moved_by_sigma_points(c.before, c.control, 0.4, c.belief, central_difference_rule(h)),
         image.mean, image.A * image.A.transpose() + image.B * image.B.transpose());

@@ -30,7 +30,7 @@ SigmaPoints points_by(const SigmaRule& rule, const SensorNoise& noise,
 
 /// The literal image of (pose, landmark, sensor noise), seven dimensions and fifteen points.
 template <class Transform>
-Image<7, 2> literal_observation(const RandomObservation& c, const Transform& transform) {
+Image literal_observation(const RandomObservation& c, const Transform& transform) {
   Vector<7> x = Vector<7>::Zero();
   x.head<3>() = plain::to_vector(c.pose.mean);
   x.segment<2>(3) = to_vector(c.landmark.mean);
@@ -38,25 +38,24 @@ Image<7, 2> literal_observation(const RandomObservation& c, const Transform& tra
   const Eigen::Matrix2d root = R.asDiagonal();
   const Vector<3> pose = x.head<3>();
   const Vector<2> landmark = x.segment<2>(3);
-  const auto S = blocks<3, 2, 2>(
-      chol_in<3>(across_first_with_heading(pose, landmark), symmetric(c.pose.covariance)),
-      chol_in<2>(across_first(pose, landmark), symmetric(c.landmark.covariance)), root);
-  return transform(x, S, plain::ObservationModel{});
+  const auto S =
+      blocks({chol_in(across_first_with_heading(pose, landmark), symmetric(c.pose.covariance)),
+              chol_in(across_first(pose, landmark), symmetric(c.landmark.covariance)), root});
+  return transform(x, S, plain::observation_model());
 }
 const auto kUnscented = [](const auto& x, const auto& S, const auto& model) {
-  return plain::unscented<2, 1>(x, S, {.alpha = 0.9, .beta = 2.0, .kappa = -2.0}, model);
+  return plain::unscented(x, S, {.alpha = 0.9, .beta = 2.0, .kappa = -2.0}, model);
 };
 const auto kCentral = [](const auto& x, const auto& S, const auto& model) {
-  const auto image = plain::central_differences<2, 1>(x, S, kInterval, model);
-  return Image<7, 2>{image.mean, image.A * image.A.transpose() + image.B * image.B.transpose(),
-                     S * image.A.transpose()};
+  const auto image = plain::central_differences(x, S, kInterval, model);
+  return Image{image.mean, image.A * image.A.transpose() + image.B * image.B.transpose(),
+               S * image.A.transpose()};
 };
 
-void expect_refined_as(const RandomObservation& c, const Image<7, 2>& image,
-                       const SigmaRule& rule) {
-  const Eigen::Matrix<double, 3, 2> C = image.cross.topRows<3>();
+void expect_refined_as(const RandomObservation& c, const Image& image, const SigmaRule& rule) {
+  const Eigen::Matrix<double, 3, 2> C = image.cross.topRows(3);
   const Eigen::Matrix<double, 3, 2> K = image.covariance.llt().solve(C.transpose()).transpose();
-  const Vector<2> nu = plain::difference<1, 2>(to_vector(c.seen), image.mean);
+  const Vector<2> nu = plain::observation_model().wrapped(to_vector(c.seen) - image.mean);
   const Vector<3> mean = plain::to_vector(c.pose.mean) + K * nu;
   const Eigen::Matrix3d P = symmetric(c.pose.covariance) - K * image.covariance * K.transpose();
 
@@ -84,18 +83,15 @@ TEST(SigmaObservation, UpdatesALandmarkAsTheSquareRootRecursionDoes) {
     const RandomObservation c(draw);
     const Vector<3> pose = plain::to_vector(c.pose.mean);
     const Vector<2> mu = to_vector(c.landmark.mean);
-    const Eigen::Matrix2d S = chol_in<2>(across_first(pose, mu), symmetric(c.landmark.covariance));
+    const Eigen::Matrix2d S = chol_in(across_first(pose, mu), symmetric(c.landmark.covariance));
     const auto image =
-        plain::central_differences<2, 1>(mu, S, kInterval, plain::LandmarkModel{c.pose.mean});
+        plain::central_differences(mu, S, kInterval, plain::landmark_model(c.pose.mean));
     const Vector<2> R(std::sqrt(c.noise.first), std::sqrt(c.noise.second));
     const Eigen::Matrix2d root = R.asDiagonal();
-    Eigen::Matrix<double, 2, 6> columns;
-    columns << image.A, image.B, root;
-    const Eigen::Matrix2d S_y = plain::tria<2, 6>(columns);
-    const Eigen::Matrix2d K = plain::square_root_gain<2, 2>(S * image.A.transpose(), S_y);
-    columns << S - K * image.A, K * image.B, K * root;
-    const Eigen::Matrix2d after = plain::tria<2, 6>(columns);
-    const Vector<2> nu = plain::difference<1, 2>(to_vector(c.seen), image.mean);
+    const Eigen::Matrix2d S_y = plain::tria_of({image.A, image.B, root});
+    const Eigen::Matrix2d K = plain::square_root_gain(S * image.A.transpose(), S_y);
+    const Eigen::Matrix2d after = plain::tria_of({S - K * image.A, K * image.B, K * root});
+    const Vector<2> nu = plain::observation_model().wrapped(to_vector(c.seen) - image.mean);
 
     LandmarkGaussian<double> landmark = c.landmark;
     Evidence<double> evidence;
@@ -114,7 +110,7 @@ TEST(SigmaObservation, InitialisesALandmarkAsFivePointsDo) {
     const Vector<2> R(std::sqrt(c.noise.first), std::sqrt(c.noise.second));
     const Eigen::Matrix2d root = R.asDiagonal();
     const auto image =
-        plain::unscented<2, -1>(to_vector(c.seen), root, {}, plain::PlaceModel{c.pose.mean});
+        plain::unscented(to_vector(c.seen), root, {}, plain::place_model(c.pose.mean));
     const SigmaRule rule = unscented_rule(2, 0.9, 2, 0);
     const auto initialised = points_by(rule, c.noise).initialise(c.pose.mean, c.seen, c.noise);
     EXPECT_LT((to_vector(initialised.mean) - image.mean).norm(), 1e-12);

@@ -10,35 +10,35 @@ namespace montecarta::filters {
 namespace {
 
 using plain::Image;
-using plain::Vector;
+using plain::SmallMatrix;
+using plain::SmallVector;
 
-/// A vector of three functions of N variables, bent in all of them.
-template <int N>
-struct Bent {
-  Eigen::Matrix<double, 3, N> slope;
-  Eigen::Matrix<double, 3, N> turning_angle;
-  explicit Bent(RngStream& draw) {
-    for (double& value : slope.reshaped()) value = draw.normal();
-    for (double& value : turning_angle.reshaped()) value = draw.normal();
-  }
-  Vector<3> operator()(const Vector<N>& x) const {
+SmallMatrix random_matrix(RngStream& draw, Eigen::Index rows, Eigen::Index columns) {
+  return SmallMatrix::NullaryExpr(rows, columns, [&](Eigen::Index) { return draw.normal(); });
+}
+SmallVector random_vector(RngStream& draw, Eigen::Index size) {
+  return random_matrix(draw, size, 1);
+}
+
+/// A vector of three functions of n variables, bent in all of them.
+plain::Model bent(RngStream& draw, Eigen::Index n) {
+  const SmallMatrix slope = random_matrix(draw, 3, n), turning_angle = random_matrix(draw, 3, n);
+  return {[=](const SmallVector& x) -> SmallVector {
     return slope * x + turning_angle * x.cwiseProduct(x) +
            (turning_angle * x).array().sin().matrix();
-  }
-};
+  }};
+}
 
 /// The moments as SigmaRule promises them.
-template <int N>
-Image<N, 3> by_rule(const SigmaRule& rule, const Vector<N>& x, const Eigen::Matrix<double, N, N>& S,
-                    const Bent<N>& model) {
-  const Vector<3> centre = model(x);
-  Vector<3> e = Vector<3>::Zero();
-  Image<N, 3> image;
-  image.covariance.setZero(), image.cross.setZero();
-  for (int j = 0; j < N; ++j) {
-    const Vector<N> ahead = x + rule.spread * S.col(j), behind = x - rule.spread * S.col(j);
-    const Vector<3> D = (model(ahead) - model(behind)) / 2.0;
-    const Vector<3> E = (model(ahead) + model(behind)) / 2.0 - centre;
+Image by_rule(const SigmaRule& rule, const SmallVector& x, const SmallMatrix& S,
+              const plain::Model& model) {
+  const SmallVector centre = model(x);
+  SmallVector e = SmallVector::Zero(3);
+  Image image{{}, SmallMatrix::Zero(3, 3), SmallMatrix::Zero(x.size(), 3)};
+  for (Eigen::Index j = 0; j < x.size(); ++j) {
+    const SmallVector ahead = x + rule.spread * S.col(j), behind = x - rule.spread * S.col(j);
+    const SmallVector D = (model(ahead) - model(behind)) / 2.0;
+    const SmallVector E = (model(ahead) + model(behind)) / 2.0 - centre;
     e += rule.mean_weight * E;
     image.covariance += rule.antisymmetric * D * D.transpose();
     image.covariance += rule.symmetric * E * E.transpose();
@@ -49,40 +49,27 @@ Image<N, 3> by_rule(const SigmaRule& rule, const Vector<N>& x, const Eigen::Matr
   return image;
 }
 
-template <int N>
-Eigen::Matrix<double, N, N> random_factor(RngStream& draw) {
-  Eigen::Matrix<double, N, N> S;
-  for (double& value : S.reshaped()) value = 0.3 * draw.normal();
-  return S;
-}
-template <int N>
-Vector<N> random_vector(RngStream& draw) {
-  return Vector<N>::NullaryExpr([&](Eigen::Index) { return draw.normal(); });
-}
-
-template <int N>
-void expect_near(const Image<N, 3>& a, const Image<N, 3>& b) {
+void expect_near(const Image& a, const Image& b) {
   const double size = 1.0 + b.covariance.norm() + b.mean.norm();
   EXPECT_LT((a.mean - b.mean).norm(), 1e-13 * size);
   EXPECT_LT((a.covariance - b.covariance).norm(), 1e-12 * size);
   EXPECT_LT((a.cross - b.cross).norm(), 1e-12 * size);
 }
 
-template <int N>
-void compare_with_unscented(RngStream& draw) {
+void compare_with_unscented(RngStream& draw, int n) {
   const plain::Unscented u{0.3 + 0.7 * draw.uniform(), 3.0 * draw.uniform(), 2.0 * draw.uniform()};
-  const Bent<N> model(draw);
-  const Vector<N> x = random_vector<N>(draw);
-  const auto S = random_factor<N>(draw);
-  expect_near<N>(by_rule<N>(unscented_rule(N, u.alpha, u.beta, u.kappa), x, S, model),
-                 plain::unscented<3, -1>(x, S, u, model));
+  const plain::Model model = bent(draw, n);
+  const SmallVector x = random_vector(draw, n);
+  const SmallMatrix S = 0.3 * random_matrix(draw, n, n);
+  expect_near(by_rule(unscented_rule(n, u.alpha, u.beta, u.kappa), x, S, model),
+              plain::unscented(x, S, u, model));
 }
 
 TEST(SigmaRule, IsTheScaledUnscentedTransformWithItsTextbookWeights) {
   RngStream draw({.seed = 81, .purpose = Draw::test});
   for (int n = 0; n < 200; ++n) {
-    compare_with_unscented<2>(draw);
-    compare_with_unscented<5>(draw);
+    compare_with_unscented(draw, 2);
+    compare_with_unscented(draw, 5);
   }
 }
 
@@ -90,13 +77,13 @@ TEST(SigmaRule, IsCentralDifferencesWithTheirTextbookWeights) {
   RngStream draw({.seed = 91, .purpose = Draw::test});
   for (int n = 0; n < 200; ++n) {
     const double h = 1.1 + draw.uniform();
-    const Bent<5> model(draw);
-    const Vector<5> x = random_vector<5>(draw);
-    const auto S = random_factor<5>(draw);
-    const auto image = plain::central_differences<3, -1>(x, S, h, model);
-    expect_near<5>(by_rule<5>(central_difference_rule(h), x, S, model),
-                   {image.mean, image.A * image.A.transpose() + image.B * image.B.transpose(),
-                    S * image.A.transpose()});
+    const plain::Model model = bent(draw, 5);
+    const SmallVector x = random_vector(draw, 5);
+    const SmallMatrix S = 0.3 * random_matrix(draw, 5, 5);
+    const auto image = plain::central_differences(x, S, h, model);
+    expect_near(by_rule(central_difference_rule(h), x, S, model),
+                {image.mean, image.A * image.A.transpose() + image.B * image.B.transpose(),
+                 S * image.A.transpose()});
   }
 }
 

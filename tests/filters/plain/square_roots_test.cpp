@@ -30,38 +30,31 @@ struct LinearSystem {
         R(random_matrix<2, 2>(draw) + Eigen::Matrix2d::Identity()) {}
 };
 
+Model linear(const SmallMatrix& H) {
+  return {[=](const SmallVector& x) -> SmallVector { return H * x; }};
+}
+
 /// EQUATIONS 3 with the process noise augmented and the sensor's added.
 struct SquareRootFilter {
   Vector<3> x = Vector<3>::Zero();
   Eigen::Matrix3d S = Eigen::Matrix3d::Identity();
 
   void predict(const LinearSystem& system) {
-    Vector<5> both = Vector<5>::Zero();
-    both.head<3>() = x;
-    Eigen::Matrix<double, 5, 5> root = Eigen::Matrix<double, 5, 5>::Zero();
-    root.topLeftCorner<3, 3>() = S;
-    root.bottomRightCorner<2, 2>() = system.Q;
+    const Model model{[&](const SmallVector& v) -> SmallVector {
+      return system.F * v.head(3) + system.G * v.tail(2);
+    }};
     const auto image =
-        central_differences<3, -1>(both, root, kInterval, [&](const Vector<5>& v) -> Vector<3> {
-          return system.F * v.head<3>() + system.G * v.tail<2>();
-        });
-    Eigen::Matrix<double, 3, 10> columns;
-    columns << image.A, image.B;
+        central_differences(stacked(x, {}, 5), blocks({S, system.Q}), kInterval, model);
     x = image.mean;
-    S = tria<3, 10>(columns);
+    S = tria_of({image.A, image.B});
   }
 
   void update(const LinearSystem& system, const Vector<2>& z) {
-    const auto image = central_differences<2, -1>(
-        x, S, kInterval, [&](const Vector<3>& v) -> Vector<2> { return system.H * v; });
-    Eigen::Matrix<double, 2, 8> observation;
-    observation << image.A, image.B, system.R;
-    const Eigen::Matrix2d S_y = tria<2, 8>(observation);
-    const Eigen::Matrix<double, 3, 2> K = square_root_gain<3, 2>(S * image.A.transpose(), S_y);
-    Eigen::Matrix<double, 3, 8> columns;
-    columns << S - K * image.A, K * image.B, K * system.R;
+    const auto image = central_differences(x, S, kInterval, linear(system.H));
+    const SmallMatrix S_y = tria_of({image.A, image.B, system.R});
+    const SmallMatrix K = square_root_gain(S * image.A.transpose(), S_y);
     x += K * (z - image.mean);
-    S = tria<3, 8>(columns);
+    S = tria_of({S - K * image.A, K * image.B, K * system.R});
   }
 };
 
@@ -104,22 +97,23 @@ TEST(CentralDifferences, HaveTheMomentsOfAQuadraticButNotOfAProduct) {
   for (int n = 0; n < 200; ++n) {
     const double a = draw.normal(), b = draw.normal(), c = draw.normal(), m = draw.normal();
     const double s = 0.1 + draw.uniform(), h = 1.1 + 2.0 * draw.uniform();
-    const auto quadratic = [&](const One& x) { return One(a + b * x(0) + c * x(0) * x(0)); };
+    const Model quadratic{
+        [&](const SmallVector& x) -> SmallVector { return One(a + b * x(0) + c * x(0) * x(0)); }};
     const double mean = a + b * m + c * (m * m + s * s);
     const double variance = std::pow((b + 2 * c * m) * s, 2) + 2 * std::pow(c * s * s, 2);
-    EXPECT_NEAR((central_differences<1, -1>(One(m), One(s), h, quadratic).mean(0)), mean, 1e-12);
-    const auto image = central_differences<1, -1>(One(m), One(s), kInterval, quadratic);
+    EXPECT_NEAR(central_differences(One(m), One(s), h, quadratic).mean(0), mean, 1e-12);
+    const auto image = central_differences(One(m), One(s), kInterval, quadratic);
     EXPECT_NEAR(image.A.squaredNorm() + image.B.squaredNorm(), variance, 1e-12 * (1 + variance));
   }
   const Eigen::Matrix2d S = Eigen::Matrix2d::Identity();
-  const auto image = central_differences<1, -1>(
-      Vector<2>(0.0, 0.0), S, kInterval, [](const Vector<2>& x) { return One(x(0) * x(1)); });
+  const Model product{[](const SmallVector& x) -> SmallVector { return One(x(0) * x(1)); }};
+  const auto image = central_differences(Vector<2>(0.0, 0.0), S, kInterval, product);
   EXPECT_EQ(image.A.squaredNorm() + image.B.squaredNorm(), 0.0) << "truth is 1: a known defect";
 }
 
 /// A bent model of three variables.
-Vector<2> bent(const Vector<3>& x) {
-  return {std::sqrt(4.0 + x.squaredNorm()), std::atan2(x(1), 3.0 + x(0)) - x(2)};
+SmallVector bent(const SmallVector& x) {
+  return Vector<2>(std::sqrt(4.0 + x.squaredNorm()), std::atan2(x(1), 3.0 + x(0)) - x(2));
 }
 
 /// S S' -> S S' - U U', one hyperbolic downdate per column of U; false if that is not positive.
@@ -144,17 +138,13 @@ template <int N, int M>
 TEST(SquareRootUpdate, ThreeFormsAgree) {
   RngStream draw({.seed = 234, .purpose = Draw::test});
   for (int n = 0; n < 1000; ++n) {
-    Eigen::Matrix3d S = tria<3, 3>(0.3 * random_matrix<3, 3>(draw));
+    Eigen::Matrix3d S = tria(0.3 * random_matrix<3, 3>(draw));
     const Eigen::Matrix2d R = 0.1 * random_matrix<2, 2>(draw);
     const Vector<3> x = random_matrix<3, 1>(draw);
-    const auto image = central_differences<2, -1>(x, S, kInterval, bent);
-    Eigen::Matrix<double, 2, 8> observation;
-    observation << image.A, image.B, R;
-    const Eigen::Matrix2d S_y = tria<2, 8>(observation);
-    const Eigen::Matrix<double, 3, 2> K = square_root_gain<3, 2>(S * image.A.transpose(), S_y);
-    Eigen::Matrix<double, 3, 8> columns;
-    columns << S - K * image.A, K * image.B, K * R;
-    const Eigen::Matrix3d by_tria = tria<3, 8>(columns);
+    const auto image = central_differences(x, S, kInterval, {bent});
+    const Eigen::Matrix2d S_y = tria_of({image.A, image.B, R});
+    const Eigen::Matrix<double, 3, 2> K = square_root_gain(S * image.A.transpose(), S_y);
+    const Eigen::Matrix3d by_tria = tria_of({S - K * image.A, K * image.B, K * R});
     Eigen::Matrix3d by_downdate = S;
     ASSERT_TRUE((cholupdate<3, 2>(by_downdate, K * S_y)));
     const Eigen::Matrix3d P = S * S.transpose() - K * S_y * S_y.transpose() * K.transpose();
@@ -176,14 +166,12 @@ TEST(SquareRootUpdate, ADowndateThatTakesMoreThanThereIsIsRefused) {
 TEST(InnovationOfEquation26, IsThatOfPoseMapAndSensorOnALinearModel) {
   RngStream draw({.seed = 236, .purpose = Draw::test});
   for (int n = 0; n < 200; ++n) {
-    const Eigen::Matrix3d S = tria<3, 3>(random_matrix<3, 3>(draw));
+    const Eigen::Matrix3d S = tria(random_matrix<3, 3>(draw));
     const Eigen::Matrix2d Sf = random_matrix<2, 2>(draw), R = random_matrix<2, 2>(draw);
     const auto Hx = random_matrix<2, 3>(draw);
     const auto Hf = random_matrix<2, 2>(draw);
-    const auto of_pose = central_differences<2, -1>(
-        Vector<3>(0, 0, 0), S, kInterval, [&](const Vector<3>& x) -> Vector<2> { return Hx * x; });
-    const auto of_map = central_differences<2, -1>(
-        Vector<2>(0, 0), Sf, kInterval, [&](const Vector<2>& f) -> Vector<2> { return Hf * f; });
+    const auto of_pose = central_differences(SmallVector::Zero(3), S, kInterval, linear(Hx));
+    const auto of_map = central_differences(SmallVector::Zero(2), Sf, kInterval, linear(Hf));
     const Eigen::Matrix2d S_bar =
         of_map.A * of_map.A.transpose() + of_map.B * of_map.B.transpose() + R * R.transpose();
     const Eigen::Matrix3d P = S * S.transpose();
