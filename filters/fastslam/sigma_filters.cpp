@@ -3,3 +3,5 @@
 
 template std::unique_ptr<montecarta::engine::SlamFilter>
 montecarta::filters::make_srcd_aided<montecarta::engine::Lanes>(const FilterSetup&);
+template std::unique_ptr<montecarta::engine::SlamFilter>
+montecarta::filters::make_srcd_pf<montecarta::engine::Lanes>(const FilterSetup&);
