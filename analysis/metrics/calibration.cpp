@@ -5,11 +5,9 @@
 #include "analysis/metrics/cell_report.hpp"
 #include "analysis/metrics/measured_run.hpp"
 #include "analysis/metrics/nees.hpp"
+#include "analysis/statistics/distributions.hpp"
 #include "analysis/statistics/spread.hpp"
 #include "engine/numbers/angle.hpp"
-
-#include <boost/math/distributions/chi_squared.hpp>
-#include <boost/math/distributions/students_t.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -46,12 +44,11 @@ RunPits::Components drawn_pits(const RunRows& rows, const EffectiveDraws& draws,
   RunPits::Components pits{kNaN, kNaN, kNaN};
   const double E = draws.of_mean;
   if (!(E > 3.0)) return pits;
-  const boost::math::students_t student(draws.of_variance - 1.0);
   for (std::size_t c = 0; c < 3; ++c) {
     const double error = wrapped(c, rows.truth[3 * scan + c] - rows.spread.mean[3 * scan + c]);
     const double variance = rows.spread.covariance[9 * scan + 4 * c] * (E + 1.0) / (E - 1.0);
     if (!(variance > 0.0) || !std::isfinite(variance) || !std::isfinite(error)) continue;
-    pits[c] = boost::math::cdf(student, error / std::sqrt(variance));
+    pits[c] = t_cdf(error / std::sqrt(variance), draws.of_variance - 1.0);
   }
   return pits;
 }
@@ -376,12 +373,11 @@ RunPits pits_of(const RunRows& rows, std::size_t particles, std::uint64_t run,
 }
 
 std::array<double, kQuarters> nees_pits(std::span<const double> nees, std::size_t dimension) {
-  const boost::math::chi_squared law(static_cast<double>(dimension));
   std::array<double, kQuarters> pits;
   const auto scans = calibration_scans(nees.size());
   for (std::size_t m = 0; m < kQuarters; ++m) {
     const double value = nees[scans[m]];
-    pits[m] = std::isfinite(value) ? boost::math::cdf(law, value) : kNaN;
+    pits[m] = std::isfinite(value) ? chi_squared_cdf(value, static_cast<double>(dimension)) : kNaN;
   }
   return pits;
 }

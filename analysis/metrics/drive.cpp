@@ -7,11 +7,11 @@
 #include "analysis/metrics/measured_run.hpp"
 #include "analysis/metrics/verdict_table.hpp"
 #include "analysis/output/number_text.hpp"
+#include "analysis/statistics/distributions.hpp"
 #include "analysis/statistics/sampler_scale.hpp"
 #include "analysis/statistics/spread.hpp"
 
 #include <Eigen/Cholesky>
-#include <boost/math/distributions/chi_squared.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +23,7 @@ namespace montecarta::analysis {
 namespace {
 
 double median_of_chi_square(std::size_t dimension) {
-  return boost::math::median(boost::math::chi_squared(static_cast<double>(dimension)));
+  return chi_squared_beyond(0.5, static_cast<double>(dimension));
 }
 
 Pose pose_at(std::span<const double> path, std::size_t row) {

@@ -4,9 +4,8 @@
 
 #include "analysis/metrics/cell_report.hpp"
 #include "analysis/metrics/measured_run.hpp"
+#include "analysis/statistics/distributions.hpp"
 #include "analysis/statistics/spread.hpp"
-
-#include <boost/math/distributions/normal.hpp>
 
 #include <algorithm>
 #include <array>
@@ -23,7 +22,7 @@ static_assert(kInnovationLags < kLagsTogether);
 /// How many standard deviations white innovations keep to at all of `lags` lags (Sidak).
 double white_deviate(std::size_t lags, double level) {
   const double each = std::pow(level, 1.0 / static_cast<double>(lags));
-  return boost::math::quantile(boost::math::normal(), 0.5 + 0.5 * each);
+  return normal_quantile(0.5 + 0.5 * each);
 }
 
 /// The widest of the bounds of the lags that are tested; NaN if none is.

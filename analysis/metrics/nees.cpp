@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/nees.hpp"
 
+#include "analysis/statistics/distributions.hpp"
 #include "analysis/statistics/spread.hpp"
 
 #include <Eigen/Eigenvalues>
-#include <boost/math/distributions/chi_squared.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -258,13 +258,11 @@ double on_full_scale(const Nees& sample, std::size_t dimension) {
   if (static_cast<std::size_t>(sample.rank) == dimension || sample.value == 0.0) {
     return sample.value;
   }
-  const boost::math::chi_squared in_range(sample.rank), full(static_cast<double>(dimension));
-  const auto value_beyond = [](const boost::math::chi_squared& law, double tail) {
-    return boost::math::quantile(boost::math::complement(law, tail));
-  };
-  const double tail = boost::math::cdf(boost::math::complement(in_range, sample.value));
-  if (tail > kLastTail) return value_beyond(full, tail);
-  return capped(sample.value * value_beyond(full, kLastTail) / value_beyond(in_range, kLastTail));
+  const auto in_range = static_cast<double>(sample.rank), full = static_cast<double>(dimension);
+  const double tail = chi_squared_tail(sample.value, in_range);
+  if (tail > kLastTail) return chi_squared_beyond(tail, full);
+  return capped(sample.value * chi_squared_beyond(kLastTail, full) /
+                chi_squared_beyond(kLastTail, in_range));
 }
 
 double ideal_spread_nees(std::size_t dimension, std::size_t particles) {

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/statistics/bootstrap.hpp"
 
+#include "analysis/statistics/distributions.hpp"
 #include "analysis/statistics/spread.hpp"
 #include "engine/errors.hpp"
 #include "engine/numbers/lanes.hpp"
 #include "engine/random/stream.hpp"
-
-#include <boost/math/distributions/normal.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -18,8 +17,6 @@ constexpr std::size_t kMostReplicates = 2000, kFewestReplicates = 400;
 constexpr std::size_t kMostDraws = 20'000'000;
 constexpr std::size_t kMostRunsToDraw = 20'000;
 constexpr std::size_t kSums = engine::Lanes::kSize;  // that grow at once
-
-double normal_share(double z) { return boost::math::cdf(boost::math::normal(), z); }
 
 /// Student's quantile for so many runs, by which the tails of the normal law are widened.
 double widened_deviate(std::size_t runs, double level) {
@@ -52,7 +49,7 @@ Interval accelerated_interval(std::vector<double>& means, const SampleShape& sha
   const double bias = bias_deviate(means, shape.mean);
   const auto end = [&](double z) {
     const double shifted = bias + z;
-    return quantile_of(means, normal_share(bias + shifted / (1.0 - shape.acceleration * shifted)));
+    return quantile_of(means, normal_cdf(bias + shifted / (1.0 - shape.acceleration * shifted)));
   };
   const double lower = end(-deviate);
   return {lower, end(deviate)};

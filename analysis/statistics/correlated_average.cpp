@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/statistics/correlated_average.hpp"
 
+#include "analysis/statistics/distributions.hpp"
 #include "engine/errors.hpp"
 
 #include <Eigen/Eigenvalues>
-#include <boost/math/distributions/chi_squared.hpp>
-#include <boost/math/distributions/normal.hpp>
 
 #include <algorithm>
 #include <array>
@@ -251,8 +250,7 @@ double ratio_where(const std::function<double(double)>& probability, double tail
 /// Upper bound of an average of a consistent filter, over its expectation, with so many degrees of
 /// freedom.
 double largest_by_chance(double freedom, double tail) {
-  const boost::math::chi_squared law(freedom);
-  return boost::math::quantile(boost::math::complement(law, tail)) / freedom;
+  return chi_squared_beyond(tail, freedom) / freedom;
 }
 
 /// Average of the squares, and their variance in units of the square of the average.
@@ -296,13 +294,12 @@ double probability_below(std::span<const WeightedSquares> terms, double x) {
   if (!(x > 0.0)) return 0.0;
   const double t = saddlepoint(terms, x);
   const Cumulants at = cumulants_at(terms, t);
-  const boost::math::normal standard;
   const double v = t * std::sqrt(at.second);
   if (std::abs(v) < kAtTheMean) {
-    return boost::math::cdf(standard, at.third / (6.0 * std::pow(at.second, 1.5)));
+    return normal_cdf(at.third / (6.0 * std::pow(at.second, 1.5)));
   }
   const double w = std::copysign(std::sqrt(std::max(2.0 * (t * x - at.value), 0.0)), t);
-  return boost::math::cdf(standard, w + std::log(v / w) / w);
+  return normal_cdf(w + std::log(v / w) / w);
 }
 
 CorrelatedAverage correlated_average(const VectorSeries& errors, double level) {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/statistics/nees_bounds.hpp"
 
+#include "analysis/statistics/distributions.hpp"
 #include "analysis/statistics/squares_law.hpp"
 #include "engine/errors.hpp"
 
-#include <boost/math/distributions/chi_squared.hpp>
-#include <boost/math/distributions/normal.hpp>
 #include <boost/math/special_functions/gamma.hpp>
 
 #include <algorithm>
@@ -31,10 +30,8 @@ Interval nees_bounds(std::uint64_t runs, std::uint64_t dimension, double level) 
                      " (a probability strictly between 0 and 1): give for instance 0.95");
   }
   const double n = static_cast<double>(runs);
-  const boost::math::chi_squared sum(n * static_cast<double>(dimension));
-  const double tail = (1.0 - level) / 2.0;
-  return {boost::math::quantile(sum, tail) / n,
-          boost::math::quantile(boost::math::complement(sum, tail)) / n};
+  const double freedom = n * static_cast<double>(dimension), tail = (1.0 - level) / 2.0;
+  return {chi_squared_quantile(tail, freedom) / n, chi_squared_beyond(tail, freedom) / n};
 }
 
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/statistics/sampler_scale.hpp"
 
+#include "analysis/statistics/distributions.hpp"
 #include "engine/errors.hpp"
 
-#include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/fisher_f.hpp>
 
 #include <algorithm>
@@ -24,10 +24,9 @@ double octave_of(std::size_t column) {
 double f_ratio(double chi_square, double d, double inverse) {
   if (inverse == 0.0) return 1.0;
   const boost::math::fisher_f ideal(d, 1.0 / inverse);
-  const boost::math::chi_squared normal(d);
-  const double above = boost::math::cdf(boost::math::complement(normal, chi_square));
+  const double above = chi_squared_tail(chi_square, d);
   const double f = above < 0.5 ? boost::math::quantile(boost::math::complement(ideal, above))
-                               : boost::math::quantile(ideal, boost::math::cdf(normal, chi_square));
+                               : boost::math::quantile(ideal, chi_squared_cdf(chi_square, d));
   return d * f / chi_square;
 }
 
@@ -44,8 +43,7 @@ EffectiveDraws effective_draws(std::size_t particles, double ess) {
 }
 
 SamplerScale::SamplerScale(std::size_t dimension) : dimension_(static_cast<double>(dimension)) {
-  const double last = boost::math::quantile(
-      boost::math::complement(boost::math::chi_squared(dimension_), kLastTail));
+  const double last = chi_squared_beyond(kLastTail, dimension_);
   columns_ = static_cast<std::size_t>((std::log2(last) - kFirstOctave) * kStepsPerOctave) + 1;
   log_f_.resize((kFreedoms + 1) * columns_);
 }

@@ -2,9 +2,9 @@
 #include "analysis/statistics/spread.hpp"
 
 #include "analysis/statistics/bootstrap.hpp"
+#include "analysis/statistics/distributions.hpp"
 
 #include <boost/math/distributions/binomial.hpp>
-#include <boost/math/distributions/students_t.hpp>
 
 #include <algorithm>
 
@@ -74,8 +74,7 @@ Spread spread_of(std::span<const double> values) {
 }
 
 double t_quantile(std::size_t n, double level) {
-  const boost::math::students_t t(static_cast<double>(n - 1));
-  return boost::math::quantile(t, 0.5 + 0.5 * level);
+  return t_score(level, static_cast<double>(n - 1));
 }
 
 bool is_heavy_tailed(std::span<const double> values) {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/statistics/squares_law.hpp"
 
+#include "analysis/statistics/distributions.hpp"
 #include "engine/errors.hpp"
 #include "engine/numbers/lanes.hpp"
 
-#include <boost/math/distributions/normal.hpp>
-#include <boost/math/distributions/students_t.hpp>
 #include <boost/math/special_functions/gamma.hpp>
 
 #include <algorithm>
@@ -18,7 +17,6 @@ namespace {
 constexpr std::size_t kLanes = engine::Lanes::kSize;  // sums of a product, added in a fixed order
 constexpr double kFarthestScore = 37;                 // the normal law has no double beyond
 constexpr double kFewestDegrees = 2.0;
-constexpr double kLeastTail = 1e-17;  // of a level that rounding made 1
 
 double total(const engine::Lanes& sums) {
   std::array<double, kLanes> each{};
@@ -52,9 +50,8 @@ std::vector<double> padded(std::span<const double> rows, std::size_t runs, std::
 
 /// The normal score with the given probability of its upper or lower tail, whichever is smaller.
 double score_of_tails(double lower, double upper) {
-  const boost::math::normal normal;
   const double tail = std::min(lower, upper);
-  const double score = tail > 0.0 ? -boost::math::quantile(normal, tail) : kFarthestScore;
+  const double score = tail > 0.0 ? -normal_quantile(tail) : kFarthestScore;
   return lower < upper ? -std::min(score, kFarthestScore) : std::min(score, kFarthestScore);
 }
 
@@ -154,8 +151,7 @@ double SquaresLaw::score(double ratio) const {
 }
 
 double SquaresLaw::quantile(double score) const {
-  const double tail =
-      boost::math::cdf(boost::math::normal(), -std::min(std::abs(score), kFarthestScore));
+  const double tail = normal_cdf(-std::min(std::abs(score), kFarthestScore));
   const double x =
       score < 0.0 ? boost::math::gamma_p_inv(shape_, tail) : boost::math::gamma_q_inv(shape_, tail);
   return shift_ + scale_ * x;
@@ -168,23 +164,6 @@ Interval SquaresLaw::interval(double ratio, double level) const {
   const double low = quantile(-score);
   return {ratio / quantile(score),
           low > 0.0 ? ratio / low : std::numeric_limits<double>::infinity()};
-}
-
-double t_p_value(double t, double freedom) {
-  const double distance = std::abs(t);
-  if (!std::isfinite(distance)) return std::isnan(distance) ? distance : 0.0;
-  return 2.0 * (std::isfinite(freedom)
-                    ? boost::math::cdf(
-                          boost::math::complement(boost::math::students_t(freedom), distance))
-                    : boost::math::cdf(boost::math::complement(boost::math::normal(), distance)));
-}
-
-double t_score(double level, double freedom) {
-  const double tail = std::max(0.5 * (1.0 - level), kLeastTail);
-  return std::isfinite(freedom)
-             ? boost::math::quantile(
-                   boost::math::complement(boost::math::students_t(freedom), tail))
-             : boost::math::quantile(boost::math::complement(boost::math::normal(), tail));
 }
 
 }  // namespace montecarta::analysis

@@ -89,8 +89,4 @@ class SquaresLaw {
   double shape_, scale_, shift_;
 };
 
-/// Two-sided p-value and quantile of Student's t; of the normal law if `freedom` is infinite.
-double t_p_value(double t, double freedom);
-double t_score(double level, double freedom);
-
 }  // namespace montecarta::analysis

@@ -2,11 +2,10 @@
 #include "analysis/verdict/verdict.hpp"
 
 #include "analysis/output/number_text.hpp"
+#include "analysis/statistics/distributions.hpp"
 #include "analysis/statistics/paired_tests.hpp"
 #include "analysis/statistics/squares_law.hpp"
 #include "engine/errors.hpp"
-
-#include <boost/math/distributions/normal.hpp>
 
 #include <algorithm>
 #include <array>
@@ -56,9 +55,7 @@ void judge_together(std::vector<FamilyTest>& families, double level) {
 
 double spent(double alpha, double information) {
   if (!(information > 0.0)) return 0.0;
-  const boost::math::normal normal;
-  const double z = boost::math::quantile(boost::math::complement(normal, 0.5 * alpha));
-  return 2.0 * boost::math::cdf(boost::math::complement(normal, z / std::sqrt(information)));
+  return 2.0 * normal_cdf(normal_quantile(0.5 * alpha) / std::sqrt(information));
 }
 
 double level_of_look(double level, std::span<const std::uint64_t> looks, std::uint64_t runs) {

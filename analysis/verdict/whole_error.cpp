@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/verdict/whole_error.hpp"
 
+#include "analysis/statistics/distributions.hpp"
 #include "engine/errors.hpp"
 
 #include <algorithm>

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/statistics/distributions.hpp"
+
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/normal.hpp>
+#include <boost/math/distributions/students_t.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace montecarta::analysis {
+namespace {
+
+using boost::math::cdf;
+using boost::math::complement;
+using boost::math::quantile;
+
+constexpr double kLeastTail = 1e-17;  // of a level that rounding made 1
+
+}  // namespace
+
+double normal_cdf(double z) { return cdf(boost::math::normal(), z); }
+double normal_quantile(double probability) { return quantile(boost::math::normal(), probability); }
+
+double chi_squared_cdf(double value, double freedom) {
+  return cdf(boost::math::chi_squared(freedom), value);
+}
+double chi_squared_tail(double value, double freedom) {
+  return cdf(complement(boost::math::chi_squared(freedom), value));
+}
+double chi_squared_quantile(double probability, double freedom) {
+  return quantile(boost::math::chi_squared(freedom), probability);
+}
+double chi_squared_beyond(double tail, double freedom) {
+  return quantile(complement(boost::math::chi_squared(freedom), tail));
+}
+
+double t_cdf(double t, double freedom) { return cdf(boost::math::students_t(freedom), t); }
+
+double t_p_value(double t, double freedom) {
+  const double distance = std::abs(t);
+  if (!std::isfinite(distance)) return std::isnan(distance) ? distance : 0.0;
+  return 2.0 * (std::isfinite(freedom) ? t_cdf(-distance, freedom) : normal_cdf(-distance));
+}
+
+double t_score(double level, double freedom) {
+  const double tail = std::max(0.5 * (1.0 - level), kLeastTail);
+  return std::isfinite(freedom) ? quantile(complement(boost::math::students_t(freedom), tail))
+                                : -normal_quantile(tail);
+}
+
+}  // namespace montecarta::analysis

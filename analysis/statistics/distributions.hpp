@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// Probabilities and quantiles of the laws that tests use, computed by Boost.Math. `freedom` is the
+/// number of degrees of freedom and need not be whole.
+namespace montecarta::analysis {
+
+/// Probability that a standard normal variable is at most z.
+double normal_cdf(double z);
+double normal_quantile(double probability);
+
+/// Probability that a chi-square variable is at most `value`, and that it is above.
+double chi_squared_cdf(double value, double freedom);
+double chi_squared_tail(double value, double freedom);
+double chi_squared_quantile(double probability, double freedom);
+/// The value that a chi-square variable exceeds with probability `tail`.
+double chi_squared_beyond(double tail, double freedom);
+
+/// Probability that Student's t is at most `t`.
+double t_cdf(double t, double freedom);
+/// Two-sided p-value of Student's t; of the normal law if `freedom` is infinite.
+double t_p_value(double t, double freedom);
+/// How far Student's t is from zero at most with probability `level`.
+double t_score(double level, double freedom);
+
+}  // namespace montecarta::analysis
