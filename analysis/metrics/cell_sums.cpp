@@ -65,9 +65,9 @@ void CellSums::add(const MeasuredRun& run) {
   }
 }
 
-void CellSums::merge(const CellSums& next) {
-  merge_into(scores_, next.scores_);
-  merge_into(over_time_, next.over_time_);
+void CellSums::merge(CellSums&& next) {
+  merge_into(scores_, std::move(next.scores_));
+  merge_into(over_time_, std::move(next.over_time_));
   for (std::size_t k = 0; k < metrics_.size(); ++k) metrics_[k]->merge(*next.metrics_[k]);
 }
 
@@ -171,10 +171,10 @@ std::vector<CellSums> sums_of(std::span<const CellRuns> cells, const RunCriteria
   for_each_in_order(
       parallel, blocks.size(),
       [&](std::size_t b) { return sums_of_block(cells[blocks[b].cell], blocks[b].runs, criteria); },
-      [&](std::size_t b, const CellSums& block) {
-        group.merge(block);
+      [&](std::size_t b, CellSums&& block) {
+        group.merge(std::move(block));
         if (!blocks[b].ends_group) return;
-        sums[blocks[b].cell].merge(group);
+        sums[blocks[b].cell].merge(std::move(group));
         group = CellSums(criteria);
       });
   return sums;

@@ -42,7 +42,7 @@ class CellSums {
 
   void add(const MeasuredRun& run);
   /// Adds the sums over the runs behind these.
-  void merge(const CellSums& next);
+  void merge(CellSums&& next);
   /// Processor times are NaN in the words, since they are no function of the study.
   void write(SumWriter& words) const;
   void read(SumReader& words);

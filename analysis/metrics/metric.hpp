@@ -26,8 +26,8 @@ class MetricSums {
  public:
   virtual ~MetricSums() = default;
   virtual void add(const MeasuredRun& run) = 0;
-  /// Adds the sums of the same metric over the runs that follow these.
-  virtual void merge(const MetricSums& next) = 0;
+  /// Adds the sums of the same metric over the runs that follow these, which are used up.
+  virtual void merge(MetricSums& next) = 0;
   /// The sums as words (sum_words.hpp), and their layout.
   virtual void write(SumWriter& words) const = 0;
   virtual void read(SumReader& words) = 0;
@@ -41,8 +41,8 @@ class MetricSums {
 template <class Sums>
 class MergedSums : public MetricSums {
  public:
-  void merge(const MetricSums& next) final {
-    merge_into(static_cast<Sums&>(*this), static_cast<const Sums&>(next));
+  void merge(MetricSums& next) final {
+    merge_into(static_cast<Sums&>(*this), std::move(static_cast<Sums&>(next)));
   }
   void write(SumWriter& words) const final { words.put(static_cast<const Sums&>(*this)); }
   void read(SumReader& words) final { words.get(static_cast<Sums&>(*this)); }

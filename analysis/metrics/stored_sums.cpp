@@ -187,9 +187,9 @@ StoredSums read_stored_sums(const ResultFile& file, const StoredCell& cell,
     for_each_in_order(
         parallel, groups.size(),
         [&](std::size_t g) { return read_group(file, groups[g], criteria); },
-        [&](std::size_t g, const ReadGroup& group) {
+        [&](std::size_t g, ReadGroup&& group) {
           take_runs(groups[g], group.runs, all);
-          all.sums.merge(group.sums);
+          all.sums.merge(std::move(group.sums));
         });
   } catch (const StudyError& error) {
     throw StudyError(file.path().string() + ": cell '" + cell.label + "': " + error.what());

@@ -218,10 +218,14 @@ Summary AspectProducts::variance_of_scales() const {
   return variance.result();
 }
 
-DividedErrors::DividedErrors(std::vector<double> errors, std::size_t scans, std::size_t dimension)
-    : dimension_(dimension), errors_(std::move(errors)), counts_(scans * dimension) {
+DividedErrors::DividedErrors(const std::vector<double>& errors, std::size_t scans,
+                             std::size_t dimension)
+    : dimension_(dimension),
+      errors_(errors),
+      counts_(scans * dimension),
+      scale_(scans * dimension, kNaN) {
   const std::size_t places = counts_.size();
-  std::vector<double> squares(places), scale(places, kNaN);
+  std::vector<double> squares(places);
   for (std::size_t first = 0; first < errors_.size(); first += places) {
     for (std::size_t place = 0; place < places; ++place) {
       const double error = errors_[first + place];
@@ -233,10 +237,7 @@ DividedErrors::DividedErrors(std::vector<double> errors, std::size_t scans, std:
   for (std::size_t place = 0; place < places; ++place) {
     double& n = counts_[place];
     if (!(n >= kFewestErrors && squares[place] > 0.0)) n = 0.0;
-    if (n > 0.0) scale[place] = 1.0 / std::sqrt(squares[place] / n);
-  }
-  for (std::size_t first = 0; first < errors_.size(); first += places) {
-    for (std::size_t place = 0; place < places; ++place) errors_[first + place] *= scale[place];
+    if (n > 0.0) scale_[place] = 1.0 / std::sqrt(squares[place] / n);
   }
 }
 
@@ -257,7 +258,7 @@ AspectProducts DividedErrors::products(const Aspect& aspect) const {
   rows.reserve(runs() * places.size());
   for (std::size_t run = 0; run < runs(); ++run) {
     for (const std::size_t place : places) {
-      const double error = errors_[run * counts_.size() + place];
+      const double error = errors_[run * counts_.size() + place] * scale_[place];
       const bool is_there = !std::isnan(error);
       rows.push_back(is_there ? error : 0.0);
       found.terms_of_run[run] += is_there ? 1.0 : 0.0;

@@ -103,16 +103,18 @@ struct AspectProducts {
 /// every component.
 class DividedErrors {
  public:
-  /// `errors` {run, scan, component}, NaN where there is none.
-  DividedErrors(std::vector<double> errors, std::size_t scans, std::size_t dimension);
+  /// `errors` {run, scan, component}, NaN where there is none, must outlive it.
+  DividedErrors(const std::vector<double>& errors, std::size_t scans, std::size_t dimension);
+  DividedErrors(std::vector<double>&& errors, std::size_t scans, std::size_t dimension) = delete;
 
   std::size_t runs() const { return errors_.size() / counts_.size(); }
   AspectProducts products(const Aspect& aspect) const;
 
  private:
   std::size_t dimension_;
-  std::vector<double> errors_;  ///< {run, scan, component}, NaN where there is none
+  std::span<const double> errors_;
   std::vector<double> counts_;  ///< {scan, component} of runs; 0 where they are too few
+  std::vector<double> scale_;   ///< {scan, component} one over the root mean square, else NaN
 };
 
 /// The spread between runs is judged from so many runs on.

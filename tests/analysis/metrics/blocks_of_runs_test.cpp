@@ -177,7 +177,7 @@ TEST(BlocksOfImportedRuns, AreMergedToTheSumsOverAllRuns) {
     blocks.back().add(run);
     all.add(run);
   }
-  for (std::size_t b = 1; b < blocks.size(); ++b) blocks[0].merge(blocks[b]);
+  for (std::size_t b = 1; b < blocks.size(); ++b) blocks[0].merge(std::move(blocks[b]));
   CellAnalysis merged, whole;
   blocks[0].put(merged);
   all.put(whole);

@@ -158,7 +158,8 @@ TEST(Traces, AreThoseOfTheCorrelationMatrix) {
     for (int j = 0; j < static_cast<int>(kScans); ++j) second += std::pow(0.8, 2 * std::abs(i - j));
   }
   for (const double missing : {0.0, 0.1}) {
-    const DividedErrors errors(autoregression(256, kScans, 0.8, missing), kScans, 1);
+    const std::vector<double> rows = autoregression(256, kScans, 0.8, missing);
+    const DividedErrors errors(rows, kScans, 1);
     const Traces found = errors.products({0, kScans, 0, 1}).traces();
     EXPECT_NEAR(found.first, kScans * (1.0 - missing), missing > 0.0 ? 0.5 : 1e-12);
     const double q = 1.0 - missing;  // a run has both of two errors with the probability q^2
@@ -182,7 +183,8 @@ TEST(Traces, AreBoundedByTheComponentsThatAreOpen) {
 }
 
 TEST(Traces, OfFewRunsAreThoseOfConstantErrors) {
-  const DividedErrors errors(autoregression(19, 60, 0.0, 0.0), 60, 1);
+  const std::vector<double> rows = autoregression(19, 60, 0.0, 0.0);
+  const DividedErrors errors(rows, 60, 1);
   const Traces found = errors.products({0, 60, 0, 1}).traces();
   EXPECT_EQ(found.second, 3600.0);
   EXPECT_TRUE(std::isinf(found.freedom));
