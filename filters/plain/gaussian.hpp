@@ -19,8 +19,9 @@ template <int N>
 using Vector = Eigen::Matrix<double, N, 1>;
 template <int N, int M = N>
 using Matrix = Eigen::Matrix<double, N, M>;
-/// Of any size up to 16 sigma points of eight dimensions, without an allocation.
-using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 8, 1>;
+/// At most 8 rows and 16 columns (sigma points), and a row or a column of them: nothing is
+/// allocated.
+using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 16, 1>;
 using SmallMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 8, 16>;
 
 inline Pose as_pose(const Vector<3>& x) { return {x(0), x(1), wrap(x(2))}; }
