@@ -66,8 +66,8 @@ void CellSums::add(const MeasuredRun& run) {
 }
 
 void CellSums::merge(CellSums&& next) {
-  merge_into(scores_, std::move(next.scores_));
-  merge_into(over_time_, std::move(next.over_time_));
+  merge_into(scores_, next.scores_);
+  merge_into(over_time_, next.over_time_);
   for (std::size_t k = 0; k < metrics_.size(); ++k) metrics_[k]->merge(*next.metrics_[k]);
 }
 

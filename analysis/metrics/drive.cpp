@@ -23,7 +23,7 @@ namespace montecarta::analysis {
 namespace {
 
 double median_of_chi_square(std::size_t dimension) {
-  return chi_squared_beyond(0.5, static_cast<double>(dimension));
+  return chi_squared_quantile(0.5, static_cast<double>(dimension));
 }
 
 Pose pose_at(std::span<const double> path, std::size_t row) {

@@ -42,7 +42,7 @@ template <class Sums>
 class MergedSums : public MetricSums {
  public:
   void merge(MetricSums& next) final {
-    merge_into(static_cast<Sums&>(*this), std::move(static_cast<Sums&>(next)));
+    merge_into(static_cast<Sums&>(*this), static_cast<Sums&>(next));
   }
   void write(SumWriter& words) const final { words.put(static_cast<const Sums&>(*this)); }
   void read(SumReader& words) final { words.get(static_cast<Sums&>(*this)); }

@@ -24,7 +24,7 @@ namespace montecarta::analysis {
 /// merge() of a class, arrays element by element, numbers by addition. What only one of them has
 /// stays as it is. `next` is used up: values of runs are moved, since threads wait for a merge.
 template <class T>
-void merge_into(T& sums, T&& next);
+void merge_into(T& sums, T& next);
 
 /// Members of a class of sums with one rule, `merge`, by which those of two blocks become one.
 template <class Merge, class... Members>
@@ -39,9 +39,8 @@ Part(Merge, std::tuple<Members...>, bool = false) -> Part<Merge, Members...>;  /
 /// Sums, which are merged themselves.
 template <class... Members>
 constexpr auto added(Members... members) {
-  return Part{
-      [=](auto& sums, auto& next) { (merge_into(sums.*members, std::move(next.*members)), ...); },
-      std::tuple(members...)};
+  return Part{[=](auto& sums, auto& next) { (merge_into(sums.*members, next.*members), ...); },
+              std::tuple(members...)};
 }
 
 /// Settings, which are the same in all blocks, and stored where sums are stored (sum_words.hpp).
@@ -100,20 +99,20 @@ template <class T, std::size_t N>
 inline constexpr bool kIsList<std::array<T, N>> = true;
 
 template <class T>
-void merge_into(T& sums, T&& next) {
+void merge_into(T& sums, T& next) {
   if constexpr (requires { T::parts(); }) {
     std::apply([&](const auto&... part) { (part.merge(sums, next), ...); }, T::parts());
   } else if constexpr (requires { sums.merge(next); }) {
     sums.merge(next);
   } else if constexpr (kIsList<T>) {
     const std::size_t common = std::min(sums.size(), next.size());
-    for (std::size_t k = 0; k < common; ++k) merge_into(sums[k], std::move(next[k]));
+    for (std::size_t k = 0; k < common; ++k) merge_into(sums[k], next[k]);
     if constexpr (requires { sums.push_back(next[0]); }) {
       std::move(next.begin() + static_cast<std::ptrdiff_t>(common), next.end(),
                 std::back_inserter(sums));
     }
   } else if constexpr (requires { sums.has_value(); }) {
-    if (sums && next) merge_into(*sums, std::move(*next));
+    if (sums && next) merge_into(*sums, *next);
     if (!sums) sums = std::move(next);
   } else {
     sums += next;

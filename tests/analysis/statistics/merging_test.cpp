@@ -46,7 +46,8 @@ TEST(Merging, TreatsEveryMemberAsWhatItIs) {
                    .lists = {{2}, {3}},
                    .first = 4,
                    .setting = 8};
-  merge_into(sums, Outer(next));
+  Outer used_up = next;
+  merge_into(sums, used_up);
   EXPECT_EQ(sums.runs, 3);
   ASSERT_EQ(sums.scans.size(), 2U);
   EXPECT_EQ(sums.scans[0].sum, 11.0);
@@ -57,7 +58,8 @@ TEST(Merging, TreatsEveryMemberAsWhatItIs) {
   EXPECT_THAT(sums.kept, ElementsAre(1, 2, 3));
   EXPECT_EQ(sums.first, 4);
   EXPECT_EQ(sums.setting, 7);
-  merge_into(sums, Outer(next));
+  used_up = next;
+  merge_into(sums, used_up);
   EXPECT_EQ(sums.known->sum, 10.0);
   EXPECT_EQ(sums.kept.size(), 3U);
   EXPECT_EQ(sums.first, 4);
@@ -70,8 +72,8 @@ TEST(Merging, OfSummariesIsThatOfAllValues) {
     all.add(value);
     parts[k < 13 ? 0 : 1].add(value);
   }
-  merge_into(parts[0], std::move(parts[1]));
-  merge_into(parts[0], std::move(parts[2]));  // of nothing
+  merge_into(parts[0], parts[1]);
+  merge_into(parts[0], parts[2]);  // of nothing
   EXPECT_EQ(parts[0].result().n, 30U);
   EXPECT_NEAR(parts[0].result().mean, all.result().mean, 1e-12);
   EXPECT_NEAR(parts[0].result().sd, all.result().sd, 1e-12);
