@@ -41,7 +41,7 @@ class CellSums {
   explicit CellSums(const RunCriteria& criteria);
 
   void add(const MeasuredRun& run);
-  /// Adds the sums over the runs behind these.
+  /// Adds the sums over the runs that follow these, which are used up.
   void merge(CellSums&& next);
   /// Processor times are NaN in the words, since they are no function of the study.
   void write(SumWriter& words) const;

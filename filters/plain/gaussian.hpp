@@ -19,8 +19,8 @@ template <int N>
 using Vector = Eigen::Matrix<double, N, 1>;
 template <int N, int M = N>
 using Matrix = Eigen::Matrix<double, N, M>;
-/// At most 8 rows and 16 columns (sigma points), and a row or a column of them: nothing is
-/// allocated.
+/// Of any size up to 8 rows and 16 columns (sigma points), without an allocation. A vector holds a
+/// row or a column.
 using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 16, 1>;
 using SmallMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 8, 16>;
 
