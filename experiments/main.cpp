@@ -2,8 +2,13 @@
 #include "experiments/commands/commands.hpp"
 
 #include <csignal>
+#include <malloc.h>
 
 int main(int argc, char** argv) {
+  // The next run needs the memory of the last one: given back to the system in between, each of its
+  // pages would be a fault.
+  mallopt(M_TRIM_THRESHOLD, 1 << 30);
+  mallopt(M_MMAP_THRESHOLD, 1 << 25);  // its largest value
   // Growing a file beyond `ulimit -f` must be an error with a remedy instead of ending the process.
   std::signal(SIGXFSZ, SIG_IGN);
   return montecarta::experiments::run_program(std::vector<std::string>(argv + 1, argv + argc));

@@ -34,7 +34,7 @@ constexpr double kMostNegative = -1e-9;     // eigenvalue that rounding may leav
 constexpr double kRounding = 1e-9;          // error of a component that is known exactly
 constexpr double kFarthestOutside = 10.0;   // standard deviations; second-order effects are smaller
 constexpr double kLargestAsymmetry = 1e-6;  // of the deviations: as six printed digits leave it
-constexpr double kLastTail = 1e-6;          // beyond, a consistent filter hardly ever is
+constexpr double kLeastTail = 1e-6;         // beyond, a consistent filter hardly ever is
 constexpr double kLargestError = 1e30;      // in deviations; its square is kLargestNees
 const Eigen::Vector3d kLeastDeviation{1e-9, 1e-9, 1e-10};
 
@@ -260,9 +260,9 @@ double on_full_scale(const Nees& sample, std::size_t dimension) {
   }
   const auto in_range = static_cast<double>(sample.rank), full = static_cast<double>(dimension);
   const double tail = chi_squared_tail(sample.value, in_range);
-  if (tail > kLastTail) return chi_squared_beyond(tail, full);
-  return capped(sample.value * chi_squared_beyond(kLastTail, full) /
-                chi_squared_beyond(kLastTail, in_range));
+  if (tail > kLeastTail) return chi_squared_beyond(tail, full);
+  return capped(sample.value * chi_squared_beyond(kLeastTail, full) /
+                chi_squared_beyond(kLeastTail, in_range));
 }
 
 double ideal_spread_nees(std::size_t dimension, std::size_t particles) {
