@@ -17,9 +17,7 @@ const NeesResult* CellAnalysis::find_nees(ErrorBlock block, Moments moments) con
 }
 
 Summary CellAnalysis::over_runs(std::string_view score) const {
-  SummaryOf sums;
-  for (const double value : scores.column(score)) sums.add(value);
-  return sums.result();
+  return summary_of(scores.column(score));
 }
 
 Spread CellAnalysis::known_over_runs(std::string_view score) const {

@@ -195,15 +195,8 @@ std::vector<double> first_values(const ResultFile& file, const StoredCell& cell,
   return sums_of({&all, 1}, criteria, parallel).front().scores().column(score.name);
 }
 
-double half_width(const std::vector<double>& values, double level) {
-  if (values.size() < 2) return std::numeric_limits<double>::infinity();
-  SummaryOf sums;
-  for (const double value : values) sums.add(value);
-  return t_quantile(values.size(), level) * sums.result().standard_error();
-}
-
 bool is_precise(const std::vector<double>& values, double level, double wanted) {
-  return half_width(values, level) < wanted && !is_heavy_tailed(values);
+  return summary_of(values).half_width(level) < wanted && !is_heavy_tailed(values);
 }
 
 }  // namespace montecarta::analysis

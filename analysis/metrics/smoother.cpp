@@ -45,8 +45,7 @@ std::string efficiency_text(const CellAnalysis& cell, const CellAnalysis& smooth
   for (std::size_t k = 0; k < runs.left.size(); ++k) {
     differences.add(0.5 * (runs.left[k] / above - runs.right[k] / below));
   }
-  const double half_width =
-      t_quantile(runs.left.size(), level) * differences.result().standard_error();
+  const double half_width = differences.result().half_width(level);
   if (!(half_width > 0.0)) return readable(efficiency);  // the same estimates in every run
   return with_interval(efficiency,
                        {efficiency * std::exp(-half_width), efficiency * std::exp(half_width)});

@@ -21,7 +21,7 @@ constexpr std::size_t kSums = engine::Lanes::kSize;  // that grow at once
 /// Student's quantile for so many runs, by which the tails of the normal law are widened.
 double widened_deviate(std::size_t runs, double level) {
   const auto n = static_cast<double>(runs);
-  return std::sqrt(n / (n - 1.0)) * t_quantile(runs, level);
+  return std::sqrt(n / (n - 1.0)) * t_score(level, n - 1.0);
 }
 
 /// Share of the replicates below the mean, in normal deviates; ties count half.
@@ -57,12 +57,8 @@ Interval accelerated_interval(std::vector<double>& means, const SampleShape& sha
 
 /// Student's interval of the mean; NaN if a value is not finite.
 Interval t_interval(const std::vector<double>& values, double level) {
-  SummaryOf sums;
-  for (const double value : values) sums.add(value);
-  const Summary summary = sums.result();
-  const double half = t_quantile(values.size(), level) * summary.standard_error();
-  if (!std::isfinite(half)) return {kNaN, kNaN};
-  return {summary.mean - half, summary.mean + half};
+  const Interval interval = summary_of(values).interval(level);
+  return std::isfinite(interval.upper - interval.lower) ? interval : Interval{kNaN, kNaN};
 }
 
 bool all_finite(std::span<const double> values) {

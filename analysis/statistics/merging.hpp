@@ -67,14 +67,14 @@ constexpr auto appended(Members... members) {
               std::tuple(members...)};
 }
 
-/// Values of the first runs, as many numbers as the member function `most` says.
+/// A value or a list for each of the first runs, of as many as the member function `most` says.
 template <class Most, class... Members>
 constexpr auto appended_up_to(Most most, Members... members) {
   return Part{[=](auto& sums, auto& next) {
                 const auto append_some = [&](auto& values, auto& more) {
                   const std::size_t room = (sums.*most)() - values.size();
                   if (more.size() > room) more.resize(room);
-                  append(values, more);
+                  std::move(more.begin(), more.end(), std::back_inserter(values));
                 };
                 (append_some(sums.*members, next.*members), ...);
               },

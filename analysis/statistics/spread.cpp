@@ -60,21 +60,25 @@ Interval median_interval(const std::vector<double>& sorted, double level) {
   return {sorted[rank - 1], sorted[sorted.size() - rank]};
 }
 
-Spread spread_of(std::span<const double> values) {
-  Spread spread;
+double Summary::half_width(double level) const {
+  return n < 2 ? kNaN : t_score(level, static_cast<double>(n) - 1.0) * standard_error();
+}
+
+Summary summary_of(std::span<const double> values) {
   SummaryOf sums;
   for (const double value : values) sums.add(value);
-  spread.summary = sums.result();
+  return sums.result();
+}
+
+Spread spread_of(std::span<const double> values) {
+  Spread spread;
+  spread.summary = summary_of(values);
   if (values.empty() || any_is_nan(values)) return spread;
   spread.median = median_of({values.begin(), values.end()});
   const auto [least, greatest] = std::ranges::minmax(values);
   spread.least = least;
   spread.greatest = greatest;
   return spread;
-}
-
-double t_quantile(std::size_t n, double level) {
-  return t_score(level, static_cast<double>(n - 1));
 }
 
 bool is_heavy_tailed(std::span<const double> values) {

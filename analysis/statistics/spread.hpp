@@ -47,6 +47,11 @@ struct Summary {
 
   /// Standard error of the mean.
   double standard_error() const { return sd / std::sqrt(static_cast<double>(n)); }
+  /// Half the width of Student's interval of the mean; NaN below two values.
+  double half_width(double level) const;
+  Interval interval(double level) const {
+    return {mean - half_width(level), mean + half_width(level)};
+  }
 };
 
 /// Adds up a Summary in the order of the calls (Welford), ignoring nothing: a NaN stays a NaN.
@@ -88,6 +93,9 @@ class SummaryOf {
   double squares_ = 0.0;
 };
 
+/// Of `values` in their order.
+Summary summary_of(std::span<const double> values);
+
 /// A number of every run, over runs, if few runs may lie far from the others: runs on a recorded
 /// drive differ by the filter's randomness alone, and one that loses the map spoils the mean.
 struct Spread {
@@ -108,9 +116,6 @@ Interval median_interval(const std::vector<double>& sorted, double level);
 
 /// Spread of `values` in the order of the runs. NaN, except their number, if one of them is NaN.
 Spread spread_of(std::span<const double> values);
-
-/// Two-sided quantile of Student's t with n - 1 degrees of freedom, n > 1.
-double t_quantile(std::size_t n, double level);
 
 /// Whether the values have such a heavy tail that no interval of their mean is valid (STATISTICS
 /// 6): a single value may decide the mean, or values of that size may not have been drawn yet. True

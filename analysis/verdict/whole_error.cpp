@@ -150,11 +150,6 @@ constexpr double kLeastShareOfSpread = 0.98;  // of errors that two runs have in
 constexpr double kMostSingularSamples = 0.1;
 constexpr std::size_t kMostKeptErrors = 8'000'000;  // 64 MB
 
-Interval interval_of_mean(const Summary& mean, double level) {
-  const double half = t_score(level, static_cast<double>(mean.n) - 1.0) * mean.standard_error();
-  return {mean.mean - half, mean.mean + half};
-}
-
 /// The mean over runs of a number that is zero if the filter is consistent.
 void add_zero_mean(Family family, const std::string& name, const Summary& mean,
                    std::vector<MemberTest>& all) {
@@ -164,8 +159,7 @@ void add_zero_mean(Family family, const std::string& name, const Summary& mean,
   member.p = is_zero
                  ? 1.0
                  : t_p_value(mean.mean / mean.standard_error(), static_cast<double>(mean.n) - 1.0);
-  all.push_back(
-      {family, std::move(member), [mean](double level) { return interval_of_mean(mean, level); }});
+  all.push_back({family, std::move(member), [mean](double level) { return mean.interval(level); }});
 }
 
 /// The deviation of the scales that runs have of their own; only too large a one counts.
@@ -175,7 +169,7 @@ MemberTest spread_test(const Summary& variance) {
   const double t = variance.mean / variance.standard_error();
   member.p = t > 0.0 ? 0.5 * t_p_value(t, static_cast<double>(variance.n) - 1.0) : 1.0;
   return {Family::between_runs, std::move(member), [variance, root](double level) {
-            const Interval of_variance = interval_of_mean(variance, level);
+            const Interval of_variance = variance.interval(level);
             return Interval{root(of_variance.lower), root(of_variance.upper)};
           }};
 }
@@ -218,19 +212,18 @@ Summary AspectProducts::variance_of_scales() const {
   return variance.result();
 }
 
-DividedErrors::DividedErrors(const std::vector<double>& errors, std::size_t scans,
-                             std::size_t dimension)
+DividedErrors::DividedErrors(const ErrorsOfRuns& errors, std::size_t scans, std::size_t dimension)
     : dimension_(dimension),
       errors_(errors),
       counts_(scans * dimension),
       scale_(scans * dimension, kNaN) {
   const std::size_t places = counts_.size();
   std::vector<double> squares(places);
-  for (std::size_t first = 0; first < errors_.size(); first += places) {
+  for (const std::vector<double>& of_run : errors_) {
+    expect(of_run.size() == places, "errors are {scan, component}");
     for (std::size_t place = 0; place < places; ++place) {
-      const double error = errors_[first + place];
-      if (std::isnan(error)) continue;
-      squares[place] += error * error;
+      if (std::isnan(of_run[place])) continue;
+      squares[place] += of_run[place] * of_run[place];
       counts_[place] += 1.0;
     }
   }
@@ -258,7 +251,7 @@ AspectProducts DividedErrors::products(const Aspect& aspect) const {
   rows.reserve(runs() * places.size());
   for (std::size_t run = 0; run < runs(); ++run) {
     for (const std::size_t place : places) {
-      const double error = errors_[run * counts_.size() + place] * scale_[place];
+      const double error = errors_[run][place] * scale_[place];
       const bool is_there = !std::isnan(error);
       rows.push_back(is_there ? error : 0.0);
       found.terms_of_run[run] += is_there ? 1.0 : 0.0;
@@ -300,15 +293,14 @@ void WholeError::add(const WhitenedRun& run, std::span<const double> nees) {
   ++runs_;
   add_squares(run);
   add_means(run);
-  if (whitened_.size() == most_kept_errors()) return;
-  whitened_.insert(whitened_.end(), run.whitened.begin(), run.whitened.end());
-  standardised_.insert(standardised_.end(), run.standardised.begin(), run.standardised.end());
+  if (whitened_.size() == most_kept_runs()) return;
+  whitened_.push_back(run.whitened);
+  standardised_.push_back(run.standardised);
 }
 
-/// Those of the first runs.
-std::size_t WholeError::most_kept_errors() const {
+std::size_t WholeError::most_kept_runs() const {
   const std::size_t length = std::max<std::size_t>(scans_ * dimension_, 1);
-  return length * std::clamp(kMostKeptErrors / length, kFewestRunsOfSpread, kMostKeptRuns);
+  return std::clamp(kMostKeptErrors / length, kFewestRunsOfSpread, kMostKeptRuns);
 }
 
 void WholeError::add_squares(const WhitenedRun& run) {

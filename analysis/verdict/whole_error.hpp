@@ -99,20 +99,23 @@ struct AspectProducts {
   double constant_root = 0.0;
 };
 
+/// {run}{scan, component}; NaN where there is no error.
+using ErrorsOfRuns = std::vector<std::vector<double>>;
+
 /// Errors of some runs, divided by their root mean square over these runs at every scan and in
 /// every component.
 class DividedErrors {
  public:
-  /// `errors` {run, scan, component}, NaN where there is none, must outlive it.
-  DividedErrors(const std::vector<double>& errors, std::size_t scans, std::size_t dimension);
-  DividedErrors(std::vector<double>&& errors, std::size_t scans, std::size_t dimension) = delete;
+  /// `errors` must outlive it.
+  DividedErrors(const ErrorsOfRuns& errors, std::size_t scans, std::size_t dimension);
+  DividedErrors(ErrorsOfRuns&& errors, std::size_t scans, std::size_t dimension) = delete;
 
-  std::size_t runs() const { return errors_.size() / counts_.size(); }
+  std::size_t runs() const { return errors_.size(); }
   AspectProducts products(const Aspect& aspect) const;
 
  private:
   std::size_t dimension_;
-  std::span<const double> errors_;
+  const ErrorsOfRuns& errors_;
   std::vector<double> counts_;  ///< {scan, component} of runs; 0 where they are too few
   std::vector<double> scale_;   ///< {scan, component} one over the root mean square, else NaN
 };
@@ -151,7 +154,7 @@ class WholeError {
         settings(&Sums::dimension_, &Sums::scans_, &Sums::stretches_),
         added(&Sums::runs_, &Sums::whole_samples_, &Sums::size_, &Sums::component_, &Sums::stretch_,
               &Sums::nees_, &Sums::bias_, &Sums::correlation_),
-        appended_up_to(&Sums::most_kept_errors, &Sums::whitened_, &Sums::standardised_));
+        appended_up_to(&Sums::most_kept_runs, &Sums::whitened_, &Sums::standardised_));
   }
 
  private:
@@ -169,7 +172,7 @@ class WholeError {
   };
 
   std::size_t first_scan(std::size_t stretch) const { return stretch * scans_ / stretches_; }
-  std::size_t most_kept_errors() const;
+  std::size_t most_kept_runs() const;
   void add_squares(const WhitenedRun& run);
   void add_means(const WhitenedRun& run);
   bool are_most_samples_whole() const;
@@ -184,8 +187,8 @@ class WholeError {
   Sum size_;
   std::vector<Sum> component_, stretch_;
   SummedError nees_;
-  std::vector<SummaryOf> bias_, correlation_;    ///< of the means of runs
-  std::vector<double> whitened_, standardised_;  ///< {kept run, scan, component}
+  std::vector<SummaryOf> bias_, correlation_;  ///< of the means of runs
+  ErrorsOfRuns whitened_, standardised_;       ///< of the first runs
 };
 
 }  // namespace montecarta::analysis

@@ -137,10 +137,8 @@ TEST(Bootstrap, OfManyRunsIsStudentsInterval) {
   const Interval drawn = bootstrap_mean(values, 0.95);
   values.push_back(1.0);
   const Interval found = bootstrap_mean(values, 0.95);
-  SummaryOf sums;
-  for (const double value : values) sums.add(value);
-  const Summary all = sums.result();
-  const double half = t_quantile(values.size(), 0.95) * all.standard_error();
+  const Summary all = summary_of(values);
+  const double half = all.half_width(0.95);
   EXPECT_DOUBLE_EQ(found.lower, all.mean - half);
   EXPECT_DOUBLE_EQ(found.upper, all.mean + half);
   EXPECT_NEAR(found.lower, drawn.lower, 0.15 * half);  // of 1000 replicates

@@ -148,7 +148,7 @@ double ratio_of_stopped(double sigma, const Enough& enough) {
 TEST(SlowUntil, IsNotStoppedByALuckySampleOfAHeavyTail) {
   const double wanted = 0.4 * std::exp(0.5 * 1.5 * 1.5);
   const double before =
-      ratio_of_stopped(1.5, [&](const auto& v) { return half_width(v, 0.95) < wanted; });
+      ratio_of_stopped(1.5, [&](const auto& v) { return summary_of(v).half_width(0.95) < wanted; });
   const double now =
       ratio_of_stopped(1.5, [&](const auto& v) { return is_precise(v, 0.95, wanted); });
   EXPECT_LT(before, 0.92);

@@ -65,6 +65,13 @@ TEST(Merging, TreatsEveryMemberAsWhatItIs) {
   EXPECT_EQ(sums.first, 4);
 }
 
+TEST(Merging, IntoEmptyListsKeepsAsManyOfTheFirstRunsAsBefore) {
+  Outer sums, next{.values = {1, 2}, .kept = {1, 2, 3, 4}};
+  merge_into(sums, next);
+  EXPECT_THAT(sums.values, ElementsAre(1, 2));
+  EXPECT_THAT(sums.kept, ElementsAre(1, 2, 3));
+}
+
 TEST(Merging, OfSummariesIsThatOfAllValues) {
   SummaryOf all, parts[3];
   for (int k = 0; k < 30; ++k) {

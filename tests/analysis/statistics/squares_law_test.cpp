@@ -133,17 +133,17 @@ TEST(MeanSquaredProduct, HasTheDeviationOfTheJackknife) {
   EXPECT_NEAR(found.deviation, std::sqrt(5.0 / 6.0 * squares), 1e-12);
 }
 
-/// Errors {run, scan, component} of an autoregression, some of them missing.
-std::vector<double> autoregression(std::size_t runs, std::size_t scans, double correlation,
-                                   double missing) {
-  std::vector<double> errors;
+/// Errors of an autoregression, some of them missing.
+ErrorsOfRuns autoregression(std::size_t runs, std::size_t scans, double correlation,
+                            double missing) {
+  ErrorsOfRuns errors(runs);
   for (std::uint64_t run = 0; run < runs; ++run) {
     RngStream draw({.seed = 7, .run = run, .purpose = Draw::test});
     double state = draw.normal();
     for (std::size_t s = 0; s < scans; ++s) {
       if (s > 0)
         state = correlation * state + std::sqrt(1 - correlation * correlation) * draw.normal();
-      errors.push_back(draw.uniform() < missing ? kNaN : 3.0 * state);
+      errors[run].push_back(draw.uniform() < missing ? kNaN : 3.0 * state);
     }
   }
   return errors;
@@ -158,7 +158,7 @@ TEST(Traces, AreThoseOfTheCorrelationMatrix) {
     for (int j = 0; j < static_cast<int>(kScans); ++j) second += std::pow(0.8, 2 * std::abs(i - j));
   }
   for (const double missing : {0.0, 0.1}) {
-    const std::vector<double> rows = autoregression(256, kScans, 0.8, missing);
+    const ErrorsOfRuns rows = autoregression(256, kScans, 0.8, missing);
     const DividedErrors errors(rows, kScans, 1);
     const Traces found = errors.products({0, kScans, 0, 1}).traces();
     EXPECT_NEAR(found.first, kScans * (1.0 - missing), missing > 0.0 ? 0.5 : 1e-12);
@@ -171,11 +171,11 @@ TEST(Traces, AreThoseOfTheCorrelationMatrix) {
 
 // Three components of which one is known exactly: errors that never change have 2 T eigenvalues.
 TEST(Traces, AreBoundedByTheComponentsThatAreOpen) {
-  std::vector<double> errors;
-  for (std::uint64_t run = 0; run < 30; ++run) {
+  ErrorsOfRuns errors(30);
+  for (std::uint64_t run = 0; run < errors.size(); ++run) {
     RngStream draw({.seed = 9, .run = run, .purpose = Draw::test});
     const double one = draw.normal(), other = draw.normal();
-    for (int s = 0; s < 10; ++s) errors.insert(errors.end(), {one, other, kNaN});
+    for (int s = 0; s < 10; ++s) errors[run].insert(errors[run].end(), {one, other, kNaN});
   }
   const AspectProducts found = DividedErrors(errors, 10, 3).products({0, 10, 0, 3});
   EXPECT_EQ(found.terms(), 20.0);
@@ -183,7 +183,7 @@ TEST(Traces, AreBoundedByTheComponentsThatAreOpen) {
 }
 
 TEST(Traces, OfFewRunsAreThoseOfConstantErrors) {
-  const std::vector<double> rows = autoregression(19, 60, 0.0, 0.0);
+  const ErrorsOfRuns rows = autoregression(19, 60, 0.0, 0.0);
   const DividedErrors errors(rows, 60, 1);
   const Traces found = errors.products({0, 60, 0, 1}).traces();
   EXPECT_EQ(found.second, 3600.0);
