@@ -2,7 +2,7 @@
 #pragma once
 
 #include "analysis/data/run_rows.hpp"
-#include "analysis/statistics/merging.hpp"
+#include "analysis/statistics/sums.hpp"
 #include "analysis/statistics/uniformity.hpp"
 
 #include <Eigen/Core>

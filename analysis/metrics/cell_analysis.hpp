@@ -3,8 +3,8 @@
 
 #include "analysis/metrics/nees.hpp"
 #include "analysis/output/frame.hpp"
-#include "analysis/statistics/merging.hpp"
 #include "analysis/statistics/spread.hpp"
+#include "analysis/statistics/sums.hpp"
 #include "analysis/verdict/verdict.hpp"
 
 #include <any>

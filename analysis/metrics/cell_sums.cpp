@@ -2,8 +2,8 @@
 #include "analysis/metrics/cell_sums.hpp"
 
 #include "analysis/statistics/bootstrap.hpp"
-#include "analysis/statistics/merging.hpp"
 #include "analysis/statistics/spread.hpp"
+#include "analysis/statistics/sums.hpp"
 #include "engine/threads/in_order.hpp"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/statistics/merging.hpp"
+#include "analysis/statistics/sums.hpp"
 
 #include <Eigen/Core>
 

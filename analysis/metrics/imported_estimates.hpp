@@ -3,8 +3,8 @@
 
 #include "analysis/data/run_rows.hpp"
 #include "analysis/metrics/study_analysis.hpp"
+#include "analysis/verdict/summed_error.hpp"
 #include "analysis/verdict/verdict.hpp"
-#include "analysis/verdict/whole_error.hpp"
 
 #include <array>
 #include <cstddef>

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "analysis/statistics/nees_bounds.hpp"
+#include "analysis/verdict/summed_error.hpp"
 #include "analysis/verdict/verdict.hpp"
-#include "analysis/verdict/whole_error.hpp"
 
 #include <cstddef>
 #include <cstdint>

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "analysis/data/run_rows.hpp"
-#include "analysis/statistics/merging.hpp"
 #include "analysis/statistics/spread.hpp"
+#include "analysis/statistics/sums.hpp"
 
 #include <algorithm>
 #include <array>

@@ -3,9 +3,9 @@
 
 #include "analysis/data/run_rows.hpp"
 #include "analysis/metrics/references.hpp"
-#include "analysis/statistics/merging.hpp"
 #include "analysis/statistics/nees_bounds.hpp"
 #include "analysis/statistics/spread.hpp"
+#include "analysis/statistics/sums.hpp"
 #include "filters/models/field_of_view.hpp"
 
 #include <Eigen/Core>

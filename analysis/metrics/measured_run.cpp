@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/measured_run.hpp"
 
-#include "analysis/data/study_settings.hpp"
 #include "analysis/metrics/cramer_rao.hpp"
 #include "analysis/metrics/error_envelopes.hpp"
 #include "analysis/metrics/imported_estimates.hpp"

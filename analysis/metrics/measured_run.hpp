@@ -3,7 +3,6 @@
 
 #include "analysis/data/run_reader.hpp"
 #include "analysis/data/run_rows.hpp"
-#include "analysis/data/study_settings.hpp"
 #include "analysis/metrics/calibration.hpp"
 #include "analysis/metrics/drive.hpp"
 #include "analysis/metrics/joint_nees.hpp"
@@ -12,6 +11,7 @@
 #include "analysis/metrics/nees.hpp"
 #include "analysis/metrics/proper_scores.hpp"
 #include "analysis/metrics/references.hpp"
+#include "analysis/verdict/verdict.hpp"
 #include "analysis/verdict/whole_error.hpp"
 #include "engine/numbers/real.hpp"
 #include "engine/records/result_file.hpp"

@@ -5,8 +5,7 @@
 #include "analysis/output/frame.hpp"
 #include "analysis/output/number_text.hpp"
 #include "analysis/output/text_table.hpp"
-#include "analysis/statistics/merging.hpp"
-#include "analysis/statistics/sum_words.hpp"
+#include "analysis/statistics/sums.hpp"
 #include "engine/errors.hpp"
 
 #include <functional>
@@ -28,7 +27,7 @@ class MetricSums {
   virtual void add(const MeasuredRun& run) = 0;
   /// Adds the sums of the same metric over the runs that follow these, which are used up.
   virtual void merge(MetricSums& next) = 0;
-  /// The sums as words (sum_words.hpp), and their layout.
+  /// The sums as words (sums.hpp), and their layout.
   virtual void write(SumWriter& words) const = 0;
   virtual void read(SumReader& words) = 0;
   virtual void add_layout(std::string& text) const = 0;
@@ -37,7 +36,7 @@ class MetricSums {
   virtual void put(CellAnalysis& cell) = 0;
 };
 
-/// The base class of `Sums`, which has parts() (merging.hpp).
+/// The base class of `Sums`, which has parts() (sums.hpp).
 template <class Sums>
 class MergedSums : public MetricSums {
  public:

@@ -3,7 +3,7 @@
 
 #include "analysis/metrics/cell_analysis.hpp"
 #include "analysis/metrics/measured_run.hpp"
-#include "analysis/statistics/merging.hpp"
+#include "analysis/statistics/sums.hpp"
 
 #include <cstddef>
 #include <cstdint>

@@ -5,8 +5,8 @@
 #include "analysis/metrics/study_analysis.hpp"
 #include "analysis/metrics/verdict_table.hpp"
 #include "analysis/output/figure.hpp"
-#include "analysis/statistics/merging.hpp"
 #include "analysis/statistics/spread.hpp"
+#include "analysis/statistics/sums.hpp"
 
 #include <Eigen/Core>
 

@@ -2,7 +2,7 @@
 #include "analysis/metrics/stored_sums.hpp"
 
 #include "analysis/metrics/cramer_rao.hpp"
-#include "analysis/statistics/sum_words.hpp"
+#include "analysis/statistics/sums.hpp"
 #include "engine/errors.hpp"
 #include "engine/records/fingerprint.hpp"
 #include "engine/threads/in_order.hpp"

@@ -2,11 +2,11 @@
 #include "analysis/metrics/study_analysis.hpp"
 
 #include "analysis/data/run_reader.hpp"
-#include "analysis/data/study_settings.hpp"
 #include "analysis/metrics/cell_sums.hpp"
 #include "analysis/metrics/imported_estimates.hpp"
 #include "analysis/metrics/stored_sums.hpp"
 #include "analysis/output/number_text.hpp"
+#include "analysis/verdict/verdict.hpp"
 #include "engine/errors.hpp"
 #include "engine/runs/monte_carlo.hpp"
 

@@ -83,15 +83,6 @@ std::string exact_text(double value) {
   return {text.data(), end.ptr};
 }
 
-std::string duration_text(double seconds) {
-  if (seconds < 59.95) return printed("%.*f", seconds < 9.95 ? 1 : 0, seconds) + " s";
-  const auto whole = std::llround(seconds);
-  const bool has_hours = whole >= 3600;
-  const auto rest = has_hours ? whole / 60 % 60 : whole % 60;
-  return std::to_string(has_hours ? whole / 3600 : whole / 60) + (has_hours ? " h " : " min ") +
-         (rest < 10 ? "0" : "") + std::to_string(rest) + (has_hours ? " min" : " s");
-}
-
 std::string percent(double share) {
   return std::isnan(share) ? "-" : printed("%.*f", 1, 100.0 * share) + " %";
 }

@@ -33,9 +33,6 @@ std::string fixed_seconds(double time);
 /// The shortest text that reads back as the same number; "nan", "inf".
 std::string exact_text(double value);
 
-/// "1 h 05 min", "3 min 20 s", "4.2 s".
-std::string duration_text(double seconds);
-
 /// A share as "94.6 %".
 std::string percent(double share);
 

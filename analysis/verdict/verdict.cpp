@@ -4,14 +4,47 @@
 #include "analysis/output/number_text.hpp"
 #include "analysis/statistics/distributions.hpp"
 #include "analysis/statistics/paired_tests.hpp"
-#include "analysis/statistics/squares_law.hpp"
 #include "engine/errors.hpp"
+#include "engine/runs/monte_carlo.hpp"
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
+#include <sstream>
+#include <utility>
 
 namespace montecarta::analysis {
+
+std::optional<std::string> study_setting(const std::string& study_text, std::string_view key) {
+  const std::string beginning = std::string(key) + " = ";
+  std::istringstream lines(study_text);
+  bool inside = false;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with('[')) inside = line == "[study]";
+    if (inside && line.starts_with(beginning)) return line.substr(beginning.size());
+  }
+  return std::nullopt;
+}
+
+double margin_in(const std::string& study_text) {
+  const auto text = study_setting(study_text, "within");
+  if (!text) return kUsualMargin;
+  double margin = 0.0;
+  const char* const last = text->data() + text->size();
+  const auto [end, error] = std::from_chars(text->data(), last, margin);
+  const bool is_good = error == std::errc() && end == last && margin >= kLeastMargin;
+  if (is_good && margin <= kMostMargin) return margin;
+  throw StudyError("study.within = " + *text +
+                   " (a ratio from 1.001 to 100 is needed): choose another file");
+}
+
+std::vector<std::uint64_t> looks_in(const std::string& study_text, std::uint64_t runs) {
+  const std::string until = study_setting(study_text, "until").value_or("");
+  const std::string with_runs = std::string(kUntilVerdict) + ", ";  // "verdict, 100 runs"
+  if (until != kUntilVerdict && !until.starts_with(with_runs)) return {};
+  return rounds_of(runs);
+}
 
 std::string name_of(Family family) {
   constexpr std::array kNames = {"size", "component",   "stretch",     "scan",
@@ -51,6 +84,35 @@ void judge_together(std::vector<FamilyTest>& families, double level) {
     test.member_limit =
         (1.0 - level) / (std::max(holm_factor, 1.0) * static_cast<double>(test.members.size()));
   }
+}
+
+MemberTest ratio_test(Family family, Member member, const SquaresLaw& law) {
+  const double ratio = member.estimate;
+  member.p = law.p_value(ratio);
+  return {family, std::move(member),
+          [law, ratio](double level) { return law.interval(ratio, level); }};
+}
+
+std::vector<FamilyTest> judge_tests(std::vector<MemberTest> tests, double level) {
+  std::ranges::stable_sort(tests, {}, &MemberTest::family);
+  std::vector<FamilyTest> families;
+  for (const MemberTest& one : tests) {
+    if (families.empty() || families.back().family != one.family) {
+      families.push_back({.family = one.family, .members = {}});
+    }
+    families.back().members.push_back(one.member);
+  }
+  auto next = tests.begin();
+  for (FamilyTest& family : families) {
+    const auto count = static_cast<double>(families.size() * family.members.size());
+    for (Member& member : family.members) {
+      member.interval = next->interval(level);
+      member.simultaneous = next->interval(1.0 - (1.0 - level) / count);
+      ++next;
+    }
+  }
+  judge_together(families, level);
+  return families;
 }
 
 double spent(double alpha, double information) {

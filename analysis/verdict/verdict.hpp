@@ -1,18 +1,39 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/data/study_settings.hpp"
 #include "analysis/statistics/nees_bounds.hpp"
 #include "analysis/statistics/spread.hpp"
+#include "analysis/statistics/squares_law.hpp"
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace montecarta::analysis {
+
+/// A key of the section [study] in the resolved study of a result file; nullopt if it is not given.
+std::optional<std::string> study_setting(const std::string& study_text, std::string_view key);
+
+/// Default margin r: a filter is consistent if the ratio of its NEES to the expected one lies in [1
+/// / r, r].
+inline constexpr double kUsualMargin = 1.1;
+inline constexpr double kLeastMargin = 1.001, kMostMargin = 100.0;
+
+/// study.within of a resolved study, else kUsualMargin. Throws StudyError if it is no number from
+/// kLeastMargin to kMostMargin.
+double margin_in(const std::string& study_text);
+
+/// Value of study.until if cells stop when their verdict is known.
+inline constexpr const char* kUntilVerdict = "verdict";
+
+/// Numbers of runs of the interim analyses in a study of `runs` runs, if its cells stop by verdict;
+/// else empty: the verdict is then taken once.
+std::vector<std::uint64_t> looks_in(const std::string& study_text, std::uint64_t runs);
 
 /// Subject of a family of tests (STATISTICS 5).
 enum class Family {
@@ -71,6 +92,19 @@ struct FamilyTest {
 /// Corrects the p-values of families of tests that are judged together at `level`: Bonferroni over
 /// the members of each, Holm (1979) over the families. Fills p, member_limit and is_rejected.
 void judge_together(std::vector<FamilyTest>& families, double level);
+
+/// A member of a family with a function for its intervals.
+struct MemberTest {
+  Family family = Family::size;
+  Member member;
+  std::function<Interval(double level)> interval;
+};
+
+/// A ratio of squared errors to the expected ones, member.estimate, with its law.
+MemberTest ratio_test(Family family, Member member, const SquaresLaw& law);
+
+/// Families in the order of kFamilies, with intervals, judged together at `level`.
+std::vector<FamilyTest> judge_tests(std::vector<MemberTest> tests, double level);
 
 /// Share of the error probability `alpha` that interim analyses have spent when `information`, in
 /// [0, 1], of the runs are there: 2 - 2 Phi(z / sqrt(information)), which resembles the boundaries

@@ -47,7 +47,8 @@ RunCounts& RunCounts::operator+=(const RunCounts& other) {
   return *this;
 }
 
-std::string duration_in_words(double seconds) {
+std::string duration_text(double seconds) {
+  if (seconds < 9.95) return print("%.1f s", seconds);
   const double whole = std::ceil(seconds);
   if (whole < 60.0) return print("%.0f s", whole);
   const auto in_60ths = [](double fine) {
@@ -68,8 +69,8 @@ std::string progress_line(const RunCounts& counts, std::uint64_t earlier, double
   if (here == 0 || !(seconds > 0.0)) return line;
   const double rate = static_cast<double>(here) / seconds;
   line += rate >= 0.1 ? print(", %.3g/s", rate) : print(", %.3g/h", rate * 3600.0);
-  if (counts.missing == 0) return line + " in " + duration_in_words(seconds);
-  return line + ", " + duration_in_words(static_cast<double>(counts.missing) / rate) + " left";
+  if (counts.missing == 0) return line + " in " + duration_text(seconds);
+  return line + ", " + duration_text(static_cast<double>(counts.missing) / rate) + " left";
 }
 
 std::string with_bar(const std::string& line, const RunCounts& counts, std::size_t width) {

@@ -2,7 +2,6 @@
 #include "experiments/commands/check.hpp"
 
 #include "analysis/metrics/stored_sums.hpp"
-#include "analysis/output/number_text.hpp"
 #include "analysis/output/text_table.hpp"
 #include "engine/records/fingerprint.hpp"
 #include "engine/records/posix_file.hpp"

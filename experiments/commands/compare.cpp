@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/comparison/study_comparison.hpp"
-#include "analysis/data/study_settings.hpp"
 #include "analysis/output/text_table.hpp"
 #include "analysis/tables/tables.hpp"
+#include "analysis/verdict/verdict.hpp"
 #include "engine/errors.hpp"
 #include "engine/wrapped_text.hpp"
 #include "experiments/commands/arguments.hpp"

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/data/study_settings.hpp"
 #include "analysis/metrics/study_analysis.hpp"
 #include "analysis/page/html.hpp"
 #include "analysis/verdict/verdict.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/data/study_settings.hpp"
 #include "analysis/metrics/study_analysis.hpp"
 #include "analysis/tables/tables.hpp"
+#include "analysis/verdict/verdict.hpp"
 #include "engine/errors.hpp"
 #include "engine/records/result_file.hpp"
 #include "engine/wrapped_text.hpp"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/data/study_settings.hpp"
 #include "analysis/output/number_text.hpp"
 #include "analysis/output/text_table.hpp"
 #include "analysis/statistics/nees_bounds.hpp"
+#include "analysis/verdict/verdict.hpp"
 #include "engine/wrapped_text.hpp"
 #include "experiments/commands/commands.hpp"
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/study_analysis.hpp"
-#include "analysis/output/number_text.hpp"
 #include "analysis/report.hpp"
 #include "analysis/tables/tables.hpp"
 #include "engine/errors.hpp"
 #include "engine/records/posix_file.hpp"
 #include "engine/records/result_file.hpp"
 #include "engine/runs/monte_carlo.hpp"
+#include "engine/runs/progress.hpp"
 #include "engine/threads/thread_budget.hpp"
 #include "engine/wrapped_text.hpp"
 #include "experiments/commands/arguments.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/data/study_settings.hpp"
+#include "analysis/verdict/verdict.hpp"
 #include "engine/records/columns.hpp"
 #include "engine/wrapped_text.hpp"
 #include "experiments/study/settings.hpp"

@@ -2,9 +2,9 @@
 #include "experiments/study/study.hpp"
 
 #include "analysis/comparison/study_comparison.hpp"
-#include "analysis/data/study_settings.hpp"
 #include "analysis/metrics/cell_sums.hpp"
 #include "analysis/metrics/study_analysis.hpp"
+#include "analysis/verdict/verdict.hpp"
 #include "engine/errors.hpp"
 #include "engine/records/result_file.hpp"
 #include "engine/runs/monte_carlo.hpp"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/verdict/verdict.hpp"
 
-#include "analysis/data/study_settings.hpp"
 #include "engine/errors.hpp"
 #include "tests/doubles/matchers.hpp"
 

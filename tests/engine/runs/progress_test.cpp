@@ -115,14 +115,14 @@ TEST(Progress, RedrawsOneLineOnATerminalWithinItsWidth) {
   }
 }
 
-TEST(ProgressLine, PutsDurationsInWords) {
-  EXPECT_EQ(duration_in_words(0.2), "1 s");
-  EXPECT_EQ(duration_in_words(59.0), "59 s");
-  EXPECT_EQ(duration_in_words(59.5), "1:00 min");
-  EXPECT_EQ(duration_in_words(185.0), "3:05 min");
-  EXPECT_EQ(duration_in_words(3599.9), "1:00 h");
-  EXPECT_EQ(duration_in_words(45600.0), "12:40 h");
-  EXPECT_EQ(duration_in_words(293760.0), "3.4 d");
+TEST(DurationText, IsShort) {
+  EXPECT_EQ(duration_text(0.2), "0.2 s");
+  EXPECT_EQ(duration_text(59.0), "59 s");
+  EXPECT_EQ(duration_text(59.5), "1:00 min");
+  EXPECT_EQ(duration_text(185.0), "3:05 min");
+  EXPECT_EQ(duration_text(3599.9), "1:00 h");
+  EXPECT_EQ(duration_text(45600.0), "12:40 h");
+  EXPECT_EQ(duration_text(293760.0), "3.4 d");
 }
 
 TEST(ProgressLine, TellsCountsRateAndTime) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/statistics/sum_words.hpp"
+#include "analysis/statistics/sums.hpp"
 
 #include "engine/errors.hpp"
 
