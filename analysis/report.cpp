@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -92,14 +93,25 @@ std::vector<Section> all_sections(const ResultFile& file, const StudyAnalysis& s
   return page;
 }
 
-/// One process a figure, which takes longer than all else.
-void draw_figures(const std::vector<Section>& sections, const fs::path& directory,
-                  const Parallel& parallel) {
+/// Writes the tables, and draws the figures: a few by each process; how many does not depend on the
+/// threads, as no byte of a report may.
+void write_files(const StudyAnalysis& study, const StudyComparison& comparison,
+                 const std::vector<Section>& sections, const fs::path& directory,
+                 const Parallel& parallel) {
   std::vector<const Figure*> figures;
   for (const Section& section : sections) {
     for (const Figure& figure : section.figures) figures.push_back(&figure);
   }
-  parallel.for_each(figures.size(), [&](std::size_t i) { draw(*figures[i], directory); });
+  constexpr std::size_t kFiguresOfProcess = 4;
+  const std::size_t processes = (figures.size() + kFiguresOfProcess - 1) / kFiguresOfProcess;
+  parallel.for_each(processes + 1, [&](std::size_t i) {
+    if (i == processes) {
+      write_csv(study, directory / "tables");
+      return write_comparison_csv(comparison, directory / "tables");
+    }
+    const auto from = std::span(figures).subspan(i * kFiguresOfProcess);
+    draw(from.first(std::min(from.size(), kFiguresOfProcess)), directory);
+  });
 }
 
 }  // namespace
@@ -107,13 +119,11 @@ void draw_figures(const std::vector<Section>& sections, const fs::path& director
 void write_report(const ResultFile& file, const fs::path& directory, const ReportOptions& options) {
   refuse_existing(directory, options.existing);
   const StudyAnalysis study = analyze(file, options.level, *options.parallel, options.within);
-  const StudyComparison comparison =
-      compare_study(study, study.cells.front().label, usual_scores(study.has_truth));
+  const StudyComparison comparison = compare_study(
+      study, study.cells.front().label, usual_scores(study.has_truth), *options.parallel);
   const Replay replay = chosen_replay(file, options.run);
   const std::vector<Section> sections = all_sections(file, study, comparison, replay, options);
-  write_csv(study, directory / "tables");
-  write_comparison_csv(comparison, directory / "tables");
-  draw_figures(sections, directory, *options.parallel);
+  write_files(study, comparison, sections, directory, *options.parallel);
   write_page(study, sections, directory);
   if (!replay.cells.empty()) {
     write_text(directory / "figures" / "replay.svg", replay_still(replay));

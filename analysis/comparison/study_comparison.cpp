@@ -272,17 +272,22 @@ Wins wins_of(const CellAnalysis& left, const CellAnalysis& right, const Score& s
 }
 
 Comparisons compare_cells(const StudyAnalysis& study, const std::string& baseline,
-                          std::span<const Score* const> scores) {
+                          std::span<const Score* const> scores, const Parallel& parallel) {
   const CellAnalysis& base = cell_called(study, baseline);
-  Comparisons comparisons{baseline, study.level, {}};
+  std::vector<std::pair<const CellAnalysis*, const Score*>> pairs;
   for (const Score* score : scores) {
     for (const CellAnalysis& cell : study.cells) {
       if (&cell == &base || !is_judged_by(cell, *score) || !is_judged_by(base, *score)) continue;
-      CellComparison row = compare_pair(cell, base, *score, study.level);
-      const bool none = row.pairs + row.without + row.baseline_without == 0;
-      if (!none) comparisons.rows.push_back(std::move(row));
+      pairs.emplace_back(&cell, score);
     }
   }
+  Comparisons comparisons{baseline, study.level, std::vector<CellComparison>(pairs.size())};
+  parallel.for_each(pairs.size(), [&](std::size_t i) {
+    comparisons.rows[i] = compare_pair(*pairs[i].first, base, *pairs[i].second, study.level);
+  });
+  std::erase_if(comparisons.rows, [](const CellComparison& row) {
+    return row.pairs + row.without + row.baseline_without == 0;
+  });
   adjust(comparisons.rows);
   return comparisons;
 }
@@ -316,8 +321,8 @@ WinMatrix win_matrix(const StudyAnalysis& study, const Score& score) {
 }
 
 StudyComparison compare_study(const StudyAnalysis& study, const std::string& baseline,
-                              std::span<const Score* const> scores) {
-  StudyComparison comparison{compare_cells(study, baseline, scores), {}};
+                              std::span<const Score* const> scores, const Parallel& parallel) {
+  StudyComparison comparison{compare_cells(study, baseline, scores, parallel), {}};
   for (const Score* score : scores) {
     WinMatrix matrix = win_matrix(study, *score);
     if (matrix.cells.size() > 1) comparison.matrices.push_back(std::move(matrix));

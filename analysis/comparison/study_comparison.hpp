@@ -66,7 +66,8 @@ Wins wins_of(const CellAnalysis& left, const CellAnalysis& right, const Score& s
 /// Cells that have no value of a score, or share no run with the baseline, have no row. The level
 /// is the study's. Throws StudyError where there is no cell `baseline`.
 Comparisons compare_cells(const StudyAnalysis& study, const std::string& baseline,
-                          std::span<const Score* const> scores);
+                          std::span<const Score* const> scores,
+                          const Parallel& parallel = Parallel::serial());
 
 /// Accuracy, consistency and cost; without a true path the distance to the leading reference.
 std::vector<const Score*> usual_scores(bool has_truth);
@@ -88,7 +89,7 @@ struct StudyComparison {
 };
 
 StudyComparison compare_study(const StudyAnalysis& study, const std::string& baseline,
-                              std::span<const Score* const> scores);
+                              std::span<const Score* const> scores, const Parallel& parallel);
 
 /// Names of the files that write_comparison_csv() makes.
 std::vector<std::string> comparison_csv_names();

@@ -165,15 +165,18 @@ Frame thin(const Frame& frame, std::size_t buckets) {
   return thinned;
 }
 
-void draw(const Figure& figure, const std::filesystem::path& directory) {
+void draw(std::span<const Figure* const> figures, const std::filesystem::path& directory) {
   make_directory(directory / "data");
   make_directory(directory / "figures");
-  for (const FigureData& data : figure.data) {
-    write_csv(data.frame, directory / "data" / data.name);
+  std::vector<std::string> scripts;
+  for (const Figure* figure : figures) {
+    for (const FigureData& data : figure->data) {
+      write_csv(data.frame, directory / "data" / data.name);
+    }
+    write_text(directory / "figures" / scripts.emplace_back(figure->name + ".gp"),
+               script_of(*figure));
   }
-  const std::string script = figure.name + ".gp";
-  write_text(directory / "figures" / script, script_of(figure));
-  run_gnuplot(directory / "figures", script);
+  run_gnuplot(directory / "figures", scripts);
 }
 
 void add_panels(const std::vector<Panel>& panels, const std::vector<double>& places,

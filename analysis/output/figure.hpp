@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <limits>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -140,8 +141,9 @@ struct Figure {
 /// and, unless the caller sets it, the sentence.
 Figure figure_of(std::string_view name, const Values& values = {});
 
-/// Writes figures/<name>.gp and data/ below `directory` and draws figures/<name>.svg and .pdf.
-void draw(const Figure& figure, const std::filesystem::path& directory);
+/// Writes figures/<name>.gp and data/ below `directory` and draws figures/<name>.svg and .pdf, all
+/// by one gnuplot, which takes longer to start than to draw.
+void draw(std::span<const Figure* const> figures, const std::filesystem::path& directory);
 
 /// The vertical axis.
 enum class Scale {

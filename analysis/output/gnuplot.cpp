@@ -95,16 +95,20 @@ PrintLayout print_layout(const Chart& chart, double width, double legend_height)
 
 namespace {
 
+constexpr const char* kNextSession = " -e 'reset session'";
+
 std::string shell_quoted(const std::string& word) {
   return "'" + replaced(word, "'", "'\\''") + "'";
 }
 
 }  // namespace
 
-void run_gnuplot(const std::filesystem::path& directory, const std::string& name,
+void run_gnuplot(const std::filesystem::path& directory, const std::vector<std::string>& scripts,
                  const std::string& program) {
-  const std::string command = "cd " + shell_quoted(directory.string()) + " && exec " +
-                              shell_quoted(program) + " " + shell_quoted(name) + " </dev/null 2>&1";
+  std::string command =
+      "cd " + shell_quoted(directory.string()) + " && exec " + shell_quoted(program);
+  for (const std::string& name : scripts) command += " " + shell_quoted(name) + kNextSession;
+  command += " </dev/null 2>&1";
   FILE* const output = ::popen(command.c_str(), "re");
   if (output == nullptr)
     throw RunError(program + ": cannot be started (" + std::strerror(errno) + ")");
@@ -122,8 +126,8 @@ void run_gnuplot(const std::filesystem::path& directory, const std::string& name
                      "install gnuplot-nox'");
   }
   if (status == 0) return;
-  throw RunError((directory / name).string() + ": gnuplot failed (" + last +
-                 "): draw it again by gnuplot, and look at what it says");
+  throw RunError(directory.string() + ": gnuplot failed (" + last +
+                 "): draw the figure again by gnuplot, and look at what it says");
 }
 
 std::string gnuplot_quoted(const std::string& text) {

@@ -29,10 +29,10 @@ struct PrintLayout {
 
 PrintLayout print_layout(const Chart& chart, double width, double legend_height);
 
-/// Runs gnuplot on the script `name` in `directory`, which is its working directory. Throws
-/// StudyError if gnuplot is not installed, and RunError with its message if it fails. `program` is
-/// looked up in PATH.
-void run_gnuplot(const std::filesystem::path& directory, const std::string& name,
+/// Runs one gnuplot on `scripts`, in order and each in a session of its own, in `directory`, which
+/// is its working directory. Throws StudyError if gnuplot is not installed, and RunError with its
+/// message if it fails. `program` is looked up in PATH.
+void run_gnuplot(const std::filesystem::path& directory, const std::vector<std::string>& scripts,
                  const std::string& program = "gnuplot");
 
 /// A text constant of gnuplot: quoted, printed as it stands.

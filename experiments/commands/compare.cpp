@@ -110,9 +110,10 @@ int compare_command(const Arguments& arguments) {
   const std::vector<const Score*> scores = scores_of(arguments, file);
   const auto directory = arguments.text("csv");
   if (directory && !arguments.has("force")) refuse_existing(*directory, comparison_csv_names());
-  const StudyAnalysis study = analyze(file, level, parallel_of(arguments),
-                                      arguments.number("within", kLeastMargin, kMostMargin));
-  const StudyComparison comparison = compare_study(study, baseline, scores);
+  const Parallel parallel = parallel_of(arguments);
+  const StudyAnalysis study =
+      analyze(file, level, parallel, arguments.number("within", kLeastMargin, kMostMargin));
+  const StudyComparison comparison = compare_study(study, baseline, scores, parallel);
   print(study, comparison, arguments.has("all"));
   if (arguments.has("metric")) print_absent(scores, comparison.comparisons);
   if (directory) write_comparison_csv(comparison, *directory);

@@ -23,7 +23,7 @@ void expect_gnuplot() {
   const auto remove = [](const std::string* path) { fs::remove_all(*path); };
   const std::unique_ptr<const std::string, decltype(remove)> removed_at_end(&folder, remove);
   std::ofstream(fs::path(folder) / "trial.gp") << "set terminal svg\nset terminal pdfcairo\n";
-  run_gnuplot(folder, "trial.gp");
+  run_gnuplot(folder, {"trial.gp"});
 }
 
 }  // namespace

@@ -86,7 +86,7 @@ TEST(GnuplotChart, IsDrawnWhateverItHolds) {
     figure.chart.columns = columns;
     figure.chart.x_first = columns == 1 ? 1.0 : kNothing;
     figure.chart.is_map = columns == 2;
-    draw(figure, folder.path());
+    draw(std::array{&std::as_const(figure)}, folder.path());
     EXPECT_GT(std::filesystem::file_size(folder / "figures/all.svg"), 1000u);
     EXPECT_GT(std::filesystem::file_size(folder / "figures/all.pdf"), 1000u);
   }
@@ -144,12 +144,16 @@ TEST(PrintLayout, ShowsAChartThatBeginsZoomedWholeAndZoomed) {
 
 TEST(Gnuplot, NamesThePackageWhereItIsMissingAndTellsWhatItSays) {
   const ScratchFolder folder;
-  EXPECT_THAT([&] { run_gnuplot(folder.path(), "a.gp", "gnuplot-that-is-nowhere"); },
+  EXPECT_THAT([&] { run_gnuplot(folder.path(), {"a.gp"}, "gnuplot-that-is-nowhere"); },
               testing::ThrowsMessage<StudyError>(HasSubstr("apt-get install gnuplot-nox")));
-  write_text(folder / "bad.gp", "plot 'nothing_here.csv'\n");
-  EXPECT_THAT([&] { run_gnuplot(folder.path(), "bad.gp"); },
-              testing::ThrowsMessage<RunError>(
-                  testing::AllOf(HasSubstr("bad.gp"), HasSubstr("No data in plot"))));
+  write_text(folder / "good.gp", "x = 1\n");
+  write_text(folder / "bad.gp", "if (exists('x')) exit\nplot 'nothing_here.csv'\n");
+  EXPECT_THAT(
+      [&] {
+        run_gnuplot(folder.path(), {"good.gp", "bad.gp"});
+      },
+      testing::ThrowsMessage<RunError>(
+          testing::AllOf(HasSubstr("bad.gp"), HasSubstr("No data in plot"))));
 }
 
 TEST(Gnuplot, QuotesText) { EXPECT_EQ(gnuplot_quoted("it's\n_m30"), R"('it''s\n_m30')"); }

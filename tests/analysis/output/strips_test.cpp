@@ -96,7 +96,7 @@ TEST(Strips, AreDrawnWithNamesNotesAndKey) {
   EXPECT_THAT(drawn.commands, HasSubstr("set label 'times too large' at screen"));
   EXPECT_THAT(drawn.commands, HasSubstr("set label 'mean' noenhanced at graph 1,graph 1 left"));
   EXPECT_THAT(drawn.commands, testing::Not(HasSubstr("keyentry")));
-  draw(figure, folder.path());
+  draw(std::array{&std::as_const(figure)}, folder.path());
   EXPECT_GT(std::filesystem::file_size(folder / "figures/strips.svg"), 1000u);
   EXPECT_GT(std::filesystem::file_size(folder / "figures/strips.pdf"), 1000u);
 }
