@@ -93,8 +93,8 @@ std::vector<Section> all_sections(const ResultFile& file, const StudyAnalysis& s
   return page;
 }
 
-/// Writes the tables, and draws the figures: a few by each process; how many does not depend on the
-/// threads, as no byte of a report may.
+/// Writes the tables and draws the figures, four of them by each gnuplot. The number is fixed
+/// because bytes of a drawing depend on the one before it, but must not depend on the threads.
 void write_files(const StudyAnalysis& study, const StudyComparison& comparison,
                  const std::vector<Section>& sections, const fs::path& directory,
                  const Parallel& parallel) {

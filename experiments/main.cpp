@@ -5,10 +5,10 @@
 #include <malloc.h>
 
 int main(int argc, char** argv) {
-  // The next run needs the memory of the last one: given back to the system in between, each of its
-  // pages would be a fault.
+  // Keep freed memory: the next run needs it again, and every page that was returned to the system
+  // costs a page fault.
   mallopt(M_TRIM_THRESHOLD, 1 << 30);
-  mallopt(M_MMAP_THRESHOLD, 1 << 25);  // its largest value
+  mallopt(M_MMAP_THRESHOLD, 1 << 25);  // the largest that glibc takes
   // Growing a file beyond `ulimit -f` must be an error with a remedy instead of ending the process.
   std::signal(SIGXFSZ, SIG_IGN);
   return montecarta::experiments::run_program(std::vector<std::string>(argv + 1, argv + argc));

@@ -289,7 +289,7 @@ RunCriteria criteria_of(const ResultFile& file, double level, double within) {
 
 void MeasuredRun::measure(const RunCriteria& criteria, std::size_t particles) {
   const DriveCriteria* own = criteria.drives.empty() ? nullptr : &criteria.drives.at(rows.run);
-  const std::span<const double> times = own != nullptr ? own->times : criteria.times;
+  times = own != nullptr ? own->times : criteria.times;
   metrics.measure(rows, particles, times);
   proper = proper_scores(rows, particles, metrics.estimates());
   references.clear();

@@ -136,6 +136,7 @@ RunCriteria criteria_of(const ResultFile& file, double level, double within = kU
 /// One run being read and measured while others are. Keeps its memory from run to run.
 struct MeasuredRun {
   RunRows rows;
+  std::span<const double> times;  ///< [s] of its scans
   RunMetrics metrics;
   std::vector<ReferenceRun> references;
   std::vector<DriveScores> drives;      ///< by each of RunCriteria::judged_fixes

@@ -126,8 +126,10 @@ void run_gnuplot(const std::filesystem::path& directory, const std::vector<std::
                      "install gnuplot-nox'");
   }
   if (status == 0) return;
-  throw RunError(directory.string() + ": gnuplot failed (" + last +
-                 "): draw the figure again by gnuplot, and look at what it says");
+  std::string all;
+  for (const std::string& name : scripts) all += (all.empty() ? "" : ", ") + name;
+  throw RunError(directory.string() + ": gnuplot failed at " + all + " (" + last +
+                 "): draw them again by gnuplot, and look at what it says");
 }
 
 std::string gnuplot_quoted(const std::string& text) {

@@ -29,9 +29,9 @@ struct PrintLayout {
 
 PrintLayout print_layout(const Chart& chart, double width, double legend_height);
 
-/// Runs one gnuplot on `scripts`, in order and each in a session of its own, in `directory`, which
-/// is its working directory. Throws StudyError if gnuplot is not installed, and RunError with its
-/// message if it fails. `program` is looked up in PATH.
+/// Runs one gnuplot on `scripts` in their order, with all settings reset between them, in
+/// `directory`, which is its working directory. Throws StudyError if gnuplot is not installed, and
+/// RunError with its message if it fails. `program` is looked up in PATH.
 void run_gnuplot(const std::filesystem::path& directory, const std::vector<std::string>& scripts,
                  const std::string& program = "gnuplot");
 

@@ -50,7 +50,8 @@ struct Summary {
   /// Half the width of Student's interval of the mean; NaN below two values.
   double half_width(double level) const;
   Interval interval(double level) const {
-    return {mean - half_width(level), mean + half_width(level)};
+    const double half = half_width(level);
+    return {mean - half, mean + half};
   }
 };
 
@@ -93,7 +94,7 @@ class SummaryOf {
   double squares_ = 0.0;
 };
 
-/// Of `values` in their order.
+/// The summary of `values`, added in their order.
 Summary summary_of(std::span<const double> values);
 
 /// A number of every run, over runs, if few runs may lie far from the others: runs on a recorded

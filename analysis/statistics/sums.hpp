@@ -76,7 +76,7 @@ constexpr auto appended(Members... members) {
               std::tuple(members...)};
 }
 
-/// A value or a list for each of the first runs, of as many as the member function `most` says.
+/// Values or lists of the first runs, at most as many as the member function `most` says.
 template <class Most, class... Members>
 constexpr auto appended_up_to(Most most, Members... members) {
   return Part{[=](auto& sums, auto& next) {

@@ -79,6 +79,13 @@ TEST(CompareCells, FindsASmallDifferenceInTheSameWorlds) {
                                               compared_cell("same", errors(200, 1.0, 2))});
   const Comparisons found = compare_cells(study, "base", scores({"position_rmse"}));
   ASSERT_EQ(found.rows.size(), 2u);
+  const Comparisons by_threads =
+      compare_cells(study, "base", scores({"position_rmse"}), Parallel(Backend::tbb, 3));
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_EQ(by_threads.rows[k].cell, found.rows[k].cell);
+    EXPECT_EQ(by_threads.rows[k].interval.lower, found.rows[k].interval.lower);
+    EXPECT_EQ(by_threads.rows[k].rank_p_holm, found.rows[k].rank_p_holm);
+  }
   const CellComparison& worse = found.rows[0];
   EXPECT_EQ(worse.cell, "worse");
   EXPECT_EQ(worse.verdict(0.95), "worse");

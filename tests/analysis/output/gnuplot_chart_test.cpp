@@ -10,10 +10,12 @@
 #include "tests/doubles/scratch_folder.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
 #include <span>
+#include <utility>
 
 namespace montecarta::analysis {
 namespace {

@@ -8,7 +8,9 @@
 #include "tests/doubles/scratch_folder.hpp"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
+#include <utility>
 
 namespace montecarta::analysis {
 namespace {

@@ -165,6 +165,7 @@ TEST(HeavyTail, IsOfOneValueThatDecidesTheMeanOfADistribution) {
   values.back() = 1e5;
   EXPECT_TRUE(is_heavy_tailed(values));
   EXPECT_FALSE(is_precise(values, 0.95, 1e6));
+  EXPECT_FALSE(is_precise({1.0}, 0.95, 1e6)) << "one value says nothing of the spread";
   EXPECT_FALSE(is_heavy_tailed(std::vector<double>{}));
   EXPECT_FALSE(is_heavy_tailed(std::vector<double>{1.0, 9.0}));
   EXPECT_FALSE(is_heavy_tailed(std::vector<double>(30, 2.0)));

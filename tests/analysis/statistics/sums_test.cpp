@@ -24,8 +24,8 @@ struct Outer {
   int runs = 0;
   std::vector<Inner> scans = {};
   std::optional<Inner> known = {};
-  std::vector<int> values = {}, kept = {};
-  std::vector<std::vector<int>> lists = {};
+  std::vector<int> values = {};
+  std::vector<std::vector<int>> kept = {}, lists = {};
   std::optional<int> first = {};
   int setting = 0;
 
@@ -38,13 +38,17 @@ struct Outer {
 };
 
 TEST(Merging, TreatsEveryMemberAsWhatItIs) {
-  Outer sums{
-      .runs = 1, .scans = {{1.0}}, .values = {1}, .kept = {1, 2}, .lists = {{1}, {}}, .setting = 7};
+  Outer sums{.runs = 1,
+             .scans = {{1.0}},
+             .values = {1},
+             .kept = {{1}, {2}},
+             .lists = {{1}, {}},
+             .setting = 7};
   const Outer next{.runs = 2,
                    .scans = {{10.0}, {20.0}},
                    .known = Inner{5.0},
                    .values = {2, 3},
-                   .kept = {3, 4},
+                   .kept = {{3, 3}, {4}},
                    .lists = {{2}, {3}},
                    .first = 4,
                    .setting = 8};
@@ -57,7 +61,7 @@ TEST(Merging, TreatsEveryMemberAsWhatItIs) {
   EXPECT_EQ(sums.known->sum, 5.0);
   EXPECT_THAT(sums.values, ElementsAre(1, 2, 3));
   EXPECT_THAT(sums.lists, ElementsAre(ElementsAre(1, 2), ElementsAre(3)));
-  EXPECT_THAT(sums.kept, ElementsAre(1, 2, 3));
+  EXPECT_THAT(sums.kept, ElementsAre(ElementsAre(1), ElementsAre(2), ElementsAre(3, 3)));
   EXPECT_EQ(sums.first, 4);
   EXPECT_EQ(sums.setting, 7);
   used_up = next;
@@ -68,10 +72,10 @@ TEST(Merging, TreatsEveryMemberAsWhatItIs) {
 }
 
 TEST(Merging, IntoEmptyListsKeepsAsManyOfTheFirstRunsAsBefore) {
-  Outer sums, next{.values = {1, 2}, .kept = {1, 2, 3, 4}};
+  Outer sums, next{.values = {1, 2}, .kept = {{1}, {2}, {3}, {4}}};
   merge_into(sums, next);
   EXPECT_THAT(sums.values, ElementsAre(1, 2));
-  EXPECT_THAT(sums.kept, ElementsAre(1, 2, 3));
+  EXPECT_THAT(sums.kept, ElementsAre(ElementsAre(1), ElementsAre(2), ElementsAre(3)));
 }
 
 TEST(Merging, OfSummariesIsThatOfAllValues) {

@@ -72,6 +72,24 @@ TEST(WholeError, LeavesOutWhatIsMissing) {
   EXPECT_DOUBLE_EQ(found.find(Family::scan)->members[1].estimate, 74.0 / 62.0);
 }
 
+// The products are of the first 256 runs, of which the second block has some.
+TEST(WholeError, OfTwoBlocksIsThatOfAllRuns) {
+  WholeError all(3, kScansOfARun), first = all, second = all;
+  for (std::uint64_t run = 0; run < 400; ++run) {
+    const WhitenedRun errors = drawn_run({.memory = Memory::ar95}, 3, run, kScansOfARun);
+    all.add(errors, nees_of(errors));
+    (run < 200 ? first : second).add(errors, nees_of(errors));
+  }
+  merge_into(first, second);
+  const Verdict merged = verdict_of(first, 3, kScansOfARun, 400);
+  const Verdict wanted = verdict_of(all, 3, kScansOfARun, 400);
+  for (const Family family : {Family::size, Family::stretch, Family::between_runs}) {
+    const Member &found = merged.find(family)->members[0], &one = wanted.find(family)->members[0];
+    EXPECT_NEAR(found.p, one.p, 1e-9) << name_of(family);
+    EXPECT_NEAR(found.interval.lower, one.interval.lower, 1e-9) << name_of(family);
+  }
+}
+
 /// Errors of a law with samples that are missing at random, as for a singular covariance.
 WholeError with_missing(const PlantedLaw& law, std::uint64_t study, std::uint64_t runs,
                         double missing) {
