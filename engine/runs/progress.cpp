@@ -48,7 +48,8 @@ RunCounts& RunCounts::operator+=(const RunCounts& other) {
 }
 
 std::string duration_text(double seconds) {
-  if (seconds < 9.95) return print("%.1f s", seconds);
+  const double tenths = std::ceil(10.0 * seconds);
+  if (tenths < 100.0) return print("%.1f s", tenths / 10.0);
   const double whole = std::ceil(seconds);
   if (whole < 60.0) return print("%.0f s", whole);
   const auto in_60ths = [](double fine) {

@@ -38,8 +38,8 @@ struct RunCounts {
   RunCounts& operator+=(const RunCounts& other);
 };
 
-/// At most 8 characters, never too short a time but for tenths of a second: "4.2 s", "12 s",
-/// "3:05 min", "12:40 h", "3.4 d".
+/// A duration in at most 8 characters, rounded up below two days: "4.2 s", "12 s", "3:05 min",
+/// "12:40 h", "3.4 d".
 std::string duration_text(double seconds);
 
 /// " 45 %  1350/3000 runs, 2 failed, 85.2/s, 19 s left" after `seconds` of this session, before

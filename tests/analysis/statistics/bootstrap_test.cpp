@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/statistics/bootstrap.hpp"
 
+#include "analysis/statistics/distributions.hpp"
 #include "analysis/statistics/paired_tests.hpp"
 #include "analysis/statistics/spread.hpp"
 #include "engine/random/stream.hpp"
@@ -138,7 +139,7 @@ TEST(Bootstrap, OfManyRunsIsStudentsInterval) {
   values.push_back(1.0);
   const Interval found = bootstrap_mean(values, 0.95);
   const Summary all = summary_of(values);
-  const double half = all.half_width(0.95);
+  const double half = t_score(0.95, static_cast<double>(all.n) - 1.0) * all.standard_error();
   EXPECT_DOUBLE_EQ(found.lower, all.mean - half);
   EXPECT_DOUBLE_EQ(found.upper, all.mean + half);
   EXPECT_NEAR(found.lower, drawn.lower, 0.15 * half);  // of 1000 replicates
