@@ -13,11 +13,11 @@
 
 namespace montecarta::analysis {
 
-/// Names of the components of an error in the frame of the true vehicle.
+/// Names of the components of an error in its ErrorFrame.
 inline constexpr std::array kErrorComponents = {"forward", "left", "heading"};
 
-/// Errors over runs beside the deviations that the filter reports, in the frame of the true vehicle
-/// (forward [m], left [m], heading [rad]).
+/// Errors over runs beside the deviations that the filter reports, in the ErrorFrame: forward [m],
+/// left [m], heading [rad].
 struct ErrorsOverTime {
   std::array<std::vector<double>, 3> rms;       ///< {component}{scan} root mean square error
   std::array<std::vector<double>, 3> believed;  ///< {component}{scan} root mean reported variance
@@ -34,7 +34,7 @@ struct ErrorTrace {
   }
 };
 
-/// The trace of run number `run`; both {scan}, in the frame of the true vehicle.
+/// The trace of run number `run`; both {scan}, in the ErrorFrame.
 ErrorTrace error_trace(std::uint64_t run, std::span<const Eigen::Vector3d> errors,
                        std::span<const Eigen::Matrix3d> covariances);
 
@@ -43,8 +43,8 @@ class ErrorMoments {
  public:
   explicit ErrorMoments(std::size_t scans) : scans_(scans) {}
 
-  /// Adds one run, {scan}, both in the frame of the true vehicle. Scans with an error or a
-  /// covariance that is not finite are left out.
+  /// Adds one run, {scan}, both in the ErrorFrame. Scans with an error or a covariance that is
+  /// not finite are left out.
   void add(std::span<const Eigen::Vector3d> errors, std::span<const Eigen::Matrix3d> covariances);
   ErrorsOverTime result() const;
   static constexpr auto parts() { return std::tuple(added(&ErrorMoments::scans_)); }

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace montecarta::analysis {
 namespace {
@@ -20,9 +21,9 @@ namespace {
 using RowMajor3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
 DrawsScales scales_of(const EffectiveDraws& draws) {
-  DrawsScales scales;
-  for (std::size_t d = 1; d <= scales.size(); ++d) {
-    if (sampler_scale(d).can_judge(draws)) scales[d - 1] = sampler_scale(d).line(draws);
+  DrawsScales scales{draws.of_mean, {}};
+  for (std::size_t d = 1; d <= scales.of.size(); ++d) {
+    if (sampler_scale(d).can_judge(draws)) scales.of[d - 1] = sampler_scale(d).line(draws);
   }
   return scales;
 }
@@ -61,6 +62,15 @@ void measure_imported(const ErrorRows& errors, bool is_pose, NeesRows& rows) {
   }
 }
 
+/// The direction ahead of a vehicle with this estimate. If that is the mean of so many `draws`
+/// (infinite: it is exact), the mean of draws and truth does not depend on the error (STATISTICS
+/// 5).
+Direction<double> ahead_in(ErrorFrame frame, const Pose& mean, const Pose& truth,
+                           double draws = std::numeric_limits<double>::infinity()) {
+  if (frame == ErrorFrame::of_truth) return direction_of(truth.heading);
+  return direction_of(mean.heading - wrap(mean.heading - truth.heading) / (draws + 1.0));
+}
+
 /// Turns x and y of `error`, and of the covariance of scan `s` if there is one, to forward and left
 /// of a vehicle that heads `ahead`; `P` becomes that covariance. All is done in place: copies of
 /// numbers that were just written would wait for memory.
@@ -79,8 +89,8 @@ void turn_pose(const Direction<double>& ahead, const std::vector<double>& covari
 void put_on_normal_scale(const DrawsScales& scales, WhitenedPose& pose) {
   double squares = 0.0;
   for (const double u : pose.whitened) squares += std::isnan(u) ? 0.0 : u * u;
-  if (squares > 0.0) pose.whitened *= std::sqrt((*scales[pose.rank - 1])(squares) / squares);
-  for (double& z : pose.standardised) z = std::copysign(std::sqrt((*scales[0])(z * z)), z);
+  if (squares > 0.0) pose.whitened *= std::sqrt((*scales.of[pose.rank - 1])(squares) / squares);
+  for (double& z : pose.standardised) z = std::copysign(std::sqrt((*scales.of[0])(z * z)), z);
 }
 
 void put_on_full_scale(NeesRows& rows) {
@@ -101,6 +111,31 @@ bool says(const ResultFile& file, const char* setting, const char* value) {
 /// Only then are estimates drawn as filters believe; else no filter can be calibrated.
 bool noise_is_matched(const ResultFile& file) {
   return file.has_truth() && says(file, "noise", "matched");
+}
+
+std::vector<double> true_headings(const ResultFile& file, std::size_t run) {
+  std::vector<double> truth(3 * file.times().size()), headings;
+  file.read_truth(run, truth);
+  for (std::size_t k = 2; k < truth.size(); k += 3) headings.push_back(truth[k]);
+  return headings;
+}
+
+bool are_true_headings_the_same(const ResultFile& file) {
+  std::vector<double> first;
+  for (std::size_t run = 0; file.has_truth() && run < file.runs().size(); ++run) {
+    const std::vector<double> headings = true_headings(file, run);
+    if (run == 0) first = headings;
+    if (headings != first) return false;
+  }
+  return true;
+}
+
+/// The scenario tells how the truth arises, even in a shard of one run. Files whose scenario does
+/// not, such as those of imported estimates, have all of their runs.
+ErrorFrame error_frame_of(const ResultFile& file) {
+  if (noise_is_matched(file)) return ErrorFrame::of_estimate;
+  const bool is_same = says(file, "noise", "measured-control") || are_true_headings_the_same(file);
+  return is_same ? ErrorFrame::of_truth : ErrorFrame::of_estimate;
 }
 
 /// Criteria for the maps of a drive with known truth; recorded drives are judged by their beacons.
@@ -138,7 +173,7 @@ RunPits measured_pits(const MeasuredRun& run, const RunCriteria& criteria, std::
 
 }  // namespace
 
-void RunMetrics::measure_errors(const RunRows& rows, std::size_t scans) {
+void RunMetrics::measure_errors(const RunRows& rows, std::size_t scans, ErrorFrame frame) {
   const auto& [mean, covariance] = estimate_of(rows);
   if (rows.truth.empty() || mean.empty()) scans = 0;
   expect(scans == 0 || (rows.truth.size() == 3 * scans && mean.size() == 3 * scans),
@@ -146,18 +181,17 @@ void RunMetrics::measure_errors(const RunRows& rows, std::size_t scans) {
   squared_position_.resize(scans);
   squared_heading_.resize(scans);
   errors_.resize(scans);
-  ahead_.resize(scans);
   covariances_.resize(covariance.empty() ? 0 : scans);
   estimates_.resize(covariances_.size());
   Eigen::Matrix3d none;
   for (std::size_t s = 0; s < scans; ++s) {
-    const Pose truth = pose_of(rows.truth, s);
+    const Pose estimate = pose_of(mean, s), truth = pose_of(rows.truth, s);
     Eigen::Vector3d& error = errors_[s];
-    error = boxminus(pose_of(mean, s), truth);
+    error = boxminus(estimate, truth);
     squared_position_[s] = error(0) * error(0) + error(1) * error(1);
     squared_heading_[s] = error(2) * error(2);
-    ahead_[s] = direction_of(truth.heading);
-    turn_pose(ahead_[s], covariance, s, error, covariance.empty() ? none : covariances_[s]);
+    turn_pose(ahead_in(frame, estimate, truth), covariance, s, error,
+              covariance.empty() ? none : covariances_[s]);
     if (!covariance.empty()) analysis::whiten_pose(error, covariances_[s], estimates_[s]);
   }
 }
@@ -178,27 +212,29 @@ void RunMetrics::correct_spread(std::size_t s, const std::optional<DrawsScales>&
     const auto rank = static_cast<std::size_t>(std::max(corrected.rank[b][s], 0));
     if (!scales) {
       corrected.set(b, s, {mixture.value[b][s], mixture.rank[b][s]});
-    } else if (!(*scales)[dimension_of(kErrorBlocks[b]) - 1]) {
+    } else if (!scales->of[dimension_of(kErrorBlocks[b]) - 1]) {
       corrected.too_few[b][s] = 1;
       value = kNaN;
     } else if (rank > 0) {
-      value = (*(*scales)[rank - 1])(value);
+      value = (*scales->of[rank - 1])(value);
     }
   }
 }
 
 /// Writes one scan of a pose by the moments that lead there.
 void RunMetrics::whiten_pose(const RunRows& rows, std::size_t s,
-                             const std::optional<DrawsScales>& scales) {
+                             const std::optional<DrawsScales>& scales, ErrorFrame frame) {
   const MomentRows& moments =
       scales || rows.mixture.covariance.empty() ? rows.spread : rows.mixture;
   WhitenedPose pose;
-  if (&moments == &estimate_of(rows)) {
+  if (!scales && &moments == &estimate_of(rows)) {
     pose = estimates_[s];
   } else {
-    Eigen::Vector3d error = boxminus(pose_of(moments.mean, s), pose_of(rows.truth, s));
+    const double draws = scales ? scales->draws : std::numeric_limits<double>::infinity();
+    const Pose mean = pose_of(moments.mean, s), truth = pose_of(rows.truth, s);
+    Eigen::Vector3d error = boxminus(mean, truth);
     Eigen::Matrix3d P;
-    turn_pose(ahead_[s], moments.covariance, s, error, P);
+    turn_pose(ahead_in(frame, mean, truth, draws), moments.covariance, s, error, P);
     analysis::whiten_pose(error, P, pose);
   }
   if (scales && pose.rank > 0) put_on_normal_scale(*scales, pose);
@@ -206,7 +242,7 @@ void RunMetrics::whiten_pose(const RunRows& rows, std::size_t s,
   Eigen::Vector3d::Map(whitened_.standardised.data() + 3 * s) = pose.standardised;
 }
 
-void RunMetrics::correct_and_whiten(const RunRows& rows, std::size_t particles) {
+void RunMetrics::correct_and_whiten(const RunRows& rows, std::size_t particles, ErrorFrame frame) {
   NeesRows& corrected = nees_[static_cast<std::size_t>(Moments::corrected)];
   corrected = particles > 0 ? nees(Moments::spread) : NeesRows{};
   for (std::size_t b = 0; b < kErrorBlocks.size(); ++b)
@@ -225,7 +261,7 @@ void RunMetrics::correct_and_whiten(const RunRows& rows, std::size_t particles) 
     }
     if (std::isnan(leading->value[0][s])) continue;
     if (rows.error.components() == 0) {
-      whiten_pose(rows, s, scales);
+      whiten_pose(rows, s, scales, frame);
       continue;
     }
     whiten(rows.error.error(s), rows.error.covariance_of(s), exact,
@@ -234,9 +270,9 @@ void RunMetrics::correct_and_whiten(const RunRows& rows, std::size_t particles) 
   }
 }
 
-void RunMetrics::measure(const RunRows& rows, std::size_t particles,
-                         std::span<const double> times) {
-  measure_errors(rows, times.size());
+void RunMetrics::measure(const RunRows& rows, std::size_t particles, std::span<const double> times,
+                         ErrorFrame frame) {
+  measure_errors(rows, times.size(), frame);
   NeesRows& spread = nees_[static_cast<std::size_t>(Moments::spread)];
   if (rows.error.components() > 0) {
     measure_imported(rows.error, !rows.spread.mean.empty(), spread);
@@ -244,7 +280,7 @@ void RunMetrics::measure(const RunRows& rows, std::size_t particles,
     measure_nees(rows.truth, rows.spread, spread);
   }
   measure_nees(rows.truth, rows.mixture, nees_[static_cast<std::size_t>(Moments::mixture)]);
-  correct_and_whiten(rows, particles);
+  correct_and_whiten(rows, particles, frame);
   for (NeesRows& all : nees_) put_on_full_scale(all);
   diversity_ = nullptr;
   lineages_.reset();
@@ -265,6 +301,7 @@ RunCriteria criteria_of(const ResultFile& file, double level, double within) {
                        .beacons = {},
                        .map = map_criteria_of(file),
                        .joint_scans = file.description().joint_scans,
+                       .frame = error_frame_of(file),
                        .calibrates = noise_is_matched(file),
                        .looks = looks_in(file.study_text(), file.study_runs()),
                        .components = {kErrorComponents.begin(), kErrorComponents.end()}};
@@ -290,7 +327,7 @@ RunCriteria criteria_of(const ResultFile& file, double level, double within) {
 void MeasuredRun::measure(const RunCriteria& criteria, std::size_t particles) {
   const DriveCriteria* own = criteria.drives.empty() ? nullptr : &criteria.drives.at(rows.run);
   times = own != nullptr ? own->times : criteria.times;
-  metrics.measure(rows, particles, times);
+  metrics.measure(rows, particles, times, criteria.frame);
   proper = proper_scores(rows, particles, metrics.estimates());
   references.clear();
   for (const PathAtFixes& fixes : own != nullptr ? own->references : criteria.references) {

@@ -13,7 +13,6 @@
 #include "analysis/metrics/references.hpp"
 #include "analysis/verdict/verdict.hpp"
 #include "analysis/verdict/whole_error.hpp"
-#include "engine/numbers/real.hpp"
 #include "engine/records/result_file.hpp"
 
 #include <Eigen/Core>
@@ -49,29 +48,42 @@ struct NeesRows {
   }
 };
 
-/// {components - 1} The scales for the draws of a scan; nullopt where these are too few.
-using DrawsScales = std::array<std::optional<SamplerScale::Line>, 3>;
+/// The scales for the draws of a scan.
+struct DrawsScales {
+  double draws = 0.0;  ///< EffectiveDraws::of_mean
+  /// {components - 1} nullopt where the draws are too few.
+  std::array<std::optional<SamplerScale::Line>, 3> of;
+};
+
+/// The heading by which errors are turned to forward and left. It must not depend on the error, or
+/// even a consistent filter has a bias in that frame (STATISTICS 5).
+enum class ErrorFrame {
+  of_estimate,  ///< heading of the mean that is judged: where the truth scatters about the data.
+                ///< The mean of a few drawn poses is corrected for its own error.
+  of_truth      ///< true heading: where it is the same in all runs
+};
 
 /// Errors and NEES of one run at every scan. Keeps its memory from run to run; one per thread.
 class RunMetrics {
  public:
   /// Reads `rows` of a complete run with `particles` (0: none); `times` [s] of the scans. Without
   /// truth there are no errors and no NEES: their rows are empty.
-  void measure(const RunRows& rows, std::size_t particles, std::span<const double> times);
+  void measure(const RunRows& rows, std::size_t particles, std::span<const double> times,
+               ErrorFrame frame);
 
   const NeesRows& nees(Moments moments) const { return nees_[static_cast<std::size_t>(moments)]; }
   /// NEES by the first of kMoments that is stored; nullptr if none is.
   const NeesRows* leading_nees() const;
-  /// Errors in units of the covariance of the leading moments, in the frame of the true vehicle, or
-  /// in the convention of imported estimates. Errors of drawn poses are on the scale of the normal
-  /// law (SamplerScale). Dimension 0 if there is no covariance.
+  /// Errors in units of the covariance of the leading moments, in the ErrorFrame, or in the
+  /// convention of imported estimates. Errors of drawn poses are on the scale of the normal law
+  /// (SamplerScale). Dimension 0 if there is no covariance.
   const WhitenedRun& whitened() const { return whitened_; }
   /// [m^2] {scan}, of the mean of estimate_of().
   const std::vector<double>& squared_position() const { return squared_position_; }
   /// [rad^2] {scan}
   const std::vector<double>& squared_heading() const { return squared_heading_; }
-  /// {scan} errors of the same mean, estimate - truth, in the frame of the true vehicle: forward
-  /// [m], left [m], heading [rad].
+  /// {scan} errors of the same mean, estimate - truth, in the ErrorFrame: forward [m], left [m],
+  /// heading [rad].
   const std::vector<Eigen::Vector3d>& errors() const { return errors_; }
   /// {scan} covariance of estimate_of() in the same frame; empty where none is stored.
   const std::vector<Eigen::Matrix3d>& covariances() const { return covariances_; }
@@ -82,10 +94,11 @@ class RunMetrics {
   const Lineages* lineages() const { return lineages_ ? &*lineages_ : nullptr; }
 
  private:
-  void measure_errors(const RunRows& rows, std::size_t scans);
-  void correct_and_whiten(const RunRows& rows, std::size_t particles);
+  void measure_errors(const RunRows& rows, std::size_t scans, ErrorFrame frame);
+  void correct_and_whiten(const RunRows& rows, std::size_t particles, ErrorFrame frame);
   void correct_spread(std::size_t s, const std::optional<DrawsScales>& scales);
-  void whiten_pose(const RunRows& rows, std::size_t s, const std::optional<DrawsScales>& scales);
+  void whiten_pose(const RunRows& rows, std::size_t s, const std::optional<DrawsScales>& scales,
+                   ErrorFrame frame);
 
   std::array<NeesRows, kMoments.size()> nees_;  ///< {Moments}
   WhitenedRun whitened_;
@@ -93,7 +106,6 @@ class RunMetrics {
   std::vector<Eigen::Vector3d> errors_;
   std::vector<Eigen::Matrix3d> covariances_;
   std::vector<WhitenedPose> estimates_;
-  std::vector<engine::Direction<double>> ahead_;  ///< {scan} of the true vehicle
   DiversityCounter counter_;
   const Diversity* diversity_ = nullptr;
   LineageWalker walker_;
@@ -117,6 +129,7 @@ struct RunCriteria {
   MapCriteria map;                             ///< of a simulation
   std::span<const std::uint32_t> joint_scans;  ///< of joint estimates
   std::vector<PathAtFixes> judged_fixes = {};  ///< of the scans, of references with known errors
+  ErrorFrame frame = ErrorFrame::of_truth;
   bool calibrates = false;  ///< whether the PITs of errors are judged: only with matched noise
   /// Runs at each interim analysis, if cells stop when their verdict is known.
   std::vector<std::uint64_t> looks = {};

@@ -26,12 +26,16 @@ def errors_of(path, label):
         is_several = cell.attrs["particles"] > 0 or "pose_mean_mixture" in cell
         if is_several or "error" in cell or "pose_covariance" not in cell:
             sys.exit(f"{label}: verdict.py takes only poses by one Gaussian with its covariance")
-        columns = file["truth/pose"], cell["pose_mean"], cell["pose_covariance"]
-        truth, mean, P = (column[:][cell["status"][:] == 1][:, rows] for column in columns)
+        noise = file["scenario"].attrs.get("noise", "unknown")
+        poses, complete = file["truth/pose"][:], cell["status"][:] == 1
+        columns = poses, cell["pose_mean"][:], cell["pose_covariance"][:]
+        truth, mean, P = (column[complete][:, rows] for column in columns)
+    is_same = noise == "measured-control" or (poses[..., 2] == poses[0, :, 2]).all()
+    frame = truth if is_same and noise != "matched" else mean  # whose heading turns the errors
     e = mean - truth
     e[..., 2] -= 2 * np.pi * np.round(e[..., 2] / (2 * np.pi))
-    turn = Rotation.from_euler("z", -truth[..., 2].ravel()).as_matrix().reshape(P.shape)
-    e, P = (turn @ e[..., None])[..., 0], turn @ P @ np.swapaxes(turn, -1, -2)  # vehicle's frame
+    turn = Rotation.from_euler("z", -frame[..., 2].ravel()).as_matrix().reshape(P.shape)
+    e, P = (turn @ e[..., None])[..., 0], turn @ P @ np.swapaxes(turn, -1, -2)
     sigma = np.sqrt(np.diagonal(P, axis1=-2, axis2=-1))
     correlation = P / (sigma[..., :, None] * sigma[..., None, :])
     if not (np.isfinite(e).all() and np.linalg.eigvalsh(correlation).min() > 1e-12):

@@ -181,23 +181,32 @@ class SlowRecompute : public testing::Test {
     EXPECT_THAT(outcome.output, testing::HasSubstr(", 0 differ"));
   }
 
-  ScratchFolder folder_;
-};
-
-/// 12 runs are judged by the law of errors that never change, 30 by traces, and 300 by the traces
-/// of some runs and with the spread between runs.
-TEST_F(SlowRecompute, TheVerdictOnTheWholeError) {
-  for (const std::uint64_t runs : {12u, 30u, 300u}) {
-    const std::string result = folder_ / ("gaussian_" + std::to_string(runs) + ".h5"),
-                      analyzed = folder_ / ("gaussian_" + std::to_string(runs));
-    write_synthetic_result(result, runs, 400, {}, leave_out_particles);
-    montecarta("analyze " + result + " --csv " + analyzed);
+  void expect_same_verdict(std::uint64_t runs,
+                           const std::function<void(StudyPlan&)>& change) const {
+    const std::string result = folder_ / "gaussian.h5", analyzed = folder_ / "gaussian";
+    write_synthetic_result(result, runs, 400, {}, change);
+    montecarta("analyze " + result + " --force --csv " + analyzed);
     const auto outcome = run_program("HDF5_USE_FILE_LOCKING= PYTHONPATH=" + kReaders +
                                      " /usr/bin/python3 -B " + MONTECARTA_SOURCE_DIR +
                                      "/tests/analysis/check_verdict.py " + result + " " + analyzed);
     EXPECT_EQ(outcome.status, 0) << outcome.output;
     EXPECT_THAT(outcome.output, testing::HasSubstr(", 0 differ"));
   }
+
+  ScratchFolder folder_;
+};
+
+/// 12 runs are judged by the law of errors that never change, 30 by traces, and 300 by the traces
+/// of some runs and with the spread between runs.
+TEST_F(SlowRecompute, TheVerdictOnTheWholeError) {
+  for (const std::uint64_t runs : {12u, 30u, 300u}) expect_same_verdict(runs, leave_out_particles);
+}
+
+TEST_F(SlowRecompute, TheVerdictInTheFrameOfTheEstimate) {
+  expect_same_verdict(30, [](StudyPlan& plan) {
+    leave_out_particles(plan);
+    plan.scenario = {{"noise", "matched"}};
+  });
 }
 
 TEST_F(SlowRecompute, AFewRunsWithExactTests) { expect_same_numbers(12, "scripted_m4"); }

@@ -68,7 +68,7 @@ void read_nees(const RunRows& rows, const StoredCell& cell, std::span<const doub
                const Scans& frames, ReplayCell& replay) {
   if (!replay.failure.empty() || rows.truth.empty()) return;
   RunMetrics metrics;
-  metrics.measure(rows, cell.particles, times);
+  metrics.measure(rows, cell.particles, times, ErrorFrame::of_truth);  // the NEES has no frame
   const NeesRows* nees = metrics.leading_nees();
   if (nees == nullptr) return;
   const auto dimension = static_cast<double>(nees->dimension.front());

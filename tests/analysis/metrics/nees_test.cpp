@@ -204,7 +204,8 @@ JudgedSampler judged_sampler(const Sampler& sampler, std::uint64_t study, std::u
   NeesAccumulator sums(ErrorBlock::pose, moments, kSamplerScans);
   WholeError errors(3, kSamplerScans);
   for (std::uint64_t run = 0; run < runs; ++run) {
-    metrics.measure(sampled_run(sampler, study, run), sampler.draws, times);
+    metrics.measure(sampled_run(sampler, study, run), sampler.draws, times,
+                    ErrorFrame::of_estimate);
     EXPECT_EQ(metrics.leading_nees(), &metrics.nees(kMoments.front()));
     sums.add(metrics);
     errors.add(metrics.whitened(), metrics.leading_nees()->value[0]);
@@ -278,7 +279,8 @@ TEST(SamplerLevel, MakesErrorsOfDrawnPosesNormal) {
   std::array<double, 3> squares{};
   double all = 0.0;
   for (std::uint64_t run = 0; run < 2000; ++run) {
-    metrics.measure(sampled_run({.draws = 10, .within = 0.1}, 4, run), 10, times);
+    metrics.measure(sampled_run({.draws = 10, .within = 0.1}, 4, run), 10, times,
+                    ErrorFrame::of_estimate);
     const WhitenedRun& errors = metrics.whitened();
     for (std::size_t i = 0; i < errors.standardised.size(); ++i) {
       squares[i % 3] += errors.standardised[i] * errors.standardised[i] / 20'000.0;
@@ -297,7 +299,7 @@ TEST(SamplerLevel, KeepsHowManyTimesTheCovarianceIsTooSmall) {
   for (std::uint64_t run = 0; run < 200; ++run) {
     RunRows rows = sampled_run({.draws = 100}, 3, run);
     for (double& element : rows.spread.covariance) element *= 1e-4;
-    metrics.measure(rows, 100, times);
+    metrics.measure(rows, 100, times, ErrorFrame::of_estimate);
     for (const double nees : metrics.leading_nees()->value[0])
       sum += nees / (200.0 * kSamplerScans);
   }
