@@ -7,6 +7,7 @@
 #include "analysis/metrics/imported_estimates.hpp"
 #include "analysis/metrics/measured_run.hpp"
 #include "analysis/output/number_text.hpp"
+#include "analysis/statistics/sampler_scale.hpp"
 #include "analysis/statistics/spread.hpp"
 #include "engine/numbers/angle.hpp"
 
@@ -351,16 +352,29 @@ std::vector<std::string> verdict_notes(const StudyAnalysis& study) {
   return notes;
 }
 
+std::optional<double> shown_for_twice(const CellAnalysis& cell) {
+  const NeesResult* pose = cell.find_nees(ErrorBlock::pose, cell.leading);
+  if (pose == nullptr || pose->moments != Moments::corrected) return std::nullopt;
+  const double ess = cell.over_runs("ess").mean;
+  const auto all = static_cast<double>(cell.particles);
+  const EffectiveDraws draws = effective_draws(cell.particles, std::isnan(ess) ? all : ess);
+  const SamplerScale& scale = sampler_scale(pose->series.dimension);
+  if (!scale.can_judge(draws)) return std::nullopt;
+  return scale.shown_ratio(2.0, draws);
+}
+
 std::vector<std::string> cautions(std::span<const CellAnalysis> cells,
                                   const ImportedState& imported) {
   constexpr double kLeastShare = 0.01;
-  std::string runs, draws, singular;
+  std::string runs, draws, singular, twice;
   const auto list = [](std::string& text, const CellAnalysis& cell, const std::string& count) {
     text += (text.empty() ? "" : ", ") + cell.label + " " + count;
   };
   for (const CellAnalysis& cell : cells) {
     const NeesResult* pose = cell.find_nees(ErrorBlock::pose, cell.leading);
     if (pose == nullptr) continue;
+    const auto shown = shown_for_twice(cell);
+    if (shown && *shown <= 2.0 * (1.0 - kLeastShare)) list(twice, cell, compact(*shown));
     const NeesSeries& series = pose->series;
     const auto share = [&](std::size_t count) {
       return static_cast<double>(count) / static_cast<double>(series.samples);
@@ -380,6 +394,7 @@ std::vector<std::string> cautions(std::span<const CellAnalysis> cells,
   add("unjudged", runs);
   add("draws", draws);
   add("singular", singular);
+  add("few particles", twice);
   return sentences;
 }
 

@@ -5,6 +5,7 @@
 #include "analysis/output/text_table.hpp"
 #include "analysis/statistics/nees_bounds.hpp"
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -41,8 +42,14 @@ std::string answers_note(const StudyAnalysis& study);
 /// Notes on the verdict table, for readers who do not know the chi-square distribution.
 std::vector<std::string> verdict_notes(const StudyAnalysis& study);
 
+/// The NEES ratio that the corrected spread of particles shows in the mean where squared errors are
+/// twice those of an ideal sampler with the cell's mean number of effective draws (STATISTICS 4).
+/// nullopt if the cell is not judged by that spread.
+std::optional<double> shown_for_twice(const CellAnalysis& cell);
+
 /// At most a sentence each on runs, scans and covariances that the verdict judges in part or not at
-/// all. Cells with less than one in a hundred are not named; consistency_table() has all counts.
+/// all, and on ratios that few particles show too near to 1. Cells with less than one in a hundred
+/// are not named; consistency_table() has all counts.
 std::vector<std::string> cautions(std::span<const CellAnalysis> cells,
                                   const ImportedState& imported);
 

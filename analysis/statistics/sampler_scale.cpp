@@ -12,13 +12,9 @@
 namespace montecarta::analysis {
 namespace {
 
-constexpr double kFirstOctave = -16.0, kStepsPerOctave = 8.0;  // of the chi-square
+constexpr double kLeastOctave = -16.0, kStepsPerOctave = 8.0;  // of the chi-square
 constexpr double kMostInverse = 0.5;  // of 1 / freedom, whose steps begin at 0
 constexpr double kLastTail = 1e-6;    // beyond, an ideal sampler hardly ever is
-
-double octave_of(std::size_t column) {
-  return kFirstOctave + static_cast<double>(column) / kStepsPerOctave;
-}
 
 /// d F / chi-square of the same probability, F with d and 1 / `inverse` degrees of freedom.
 double f_ratio(double chi_square, double d, double inverse) {
@@ -43,9 +39,13 @@ EffectiveDraws effective_draws(std::size_t particles, double ess) {
 }
 
 SamplerScale::SamplerScale(std::size_t dimension) : dimension_(static_cast<double>(dimension)) {
-  const double last = chi_squared_beyond(kLastTail, dimension_);
-  columns_ = static_cast<std::size_t>((std::log2(last) - kFirstOctave) * kStepsPerOctave) + 1;
+  last_octave_ = std::log2(chi_squared_beyond(kLastTail, dimension_));
+  columns_ = static_cast<std::size_t>((last_octave_ - kLeastOctave) * kStepsPerOctave) + 1;
   log_f_.resize((kFreedoms + 1) * columns_);
+}
+
+double SamplerScale::octave_of(std::size_t column) const {
+  return last_octave_ - static_cast<double>(columns_ - 1 - column) / kStepsPerOctave;
 }
 
 const double* SamplerScale::row(std::size_t step) const {
@@ -77,8 +77,21 @@ SamplerScale::Line SamplerScale::line(const EffectiveDraws& draws) const {
   line.part_ = place - static_cast<double>(step);
   line.last_ = columns_ - 1;
   line.factor_ = (E - 1.0) / (E + 1.0) * freedom / (draws.of_variance - 1.0);
-  line.beyond_ = std::exp2(octave_of(line.last_) - line.log_f_at(line.last_));
+  line.first_octave_ = octave_of(0);
+  line.beyond_ = std::exp2(last_octave_ - line.log_f_at(line.last_));
   return line;
+}
+
+double SamplerScale::shown_ratio(double ratio, const EffectiveDraws& draws) const {
+  const Line line = this->line(draws);
+  double sum = 0.0, above = 1.0;  // above the column
+  for (std::size_t column = 0; column + 1 < columns_; ++column) {
+    const double next = chi_squared_tail(std::exp2(octave_of(column + 1)), dimension_);
+    const double log_f = 0.5 * (line.log_f_at(column) + line.log_f_at(column + 1));
+    sum += (above - next) * line(ratio * std::exp2(log_f) / line.factor_);
+    above = next;
+  }
+  return sum / dimension_;
 }
 
 double SamplerScale::Line::operator()(double nees) const {
@@ -86,14 +99,15 @@ double SamplerScale::Line::operator()(double nees) const {
   const double f = nees * factor_;
   const double log_f = std::log2(f);
   if (log_f >= log_f_at(last_)) return f * beyond_;
-  if (log_f <= log_f_at(0)) return f * std::exp2(octave_of(0) - log_f_at(0));
+  if (log_f <= log_f_at(0)) return f * std::exp2(first_octave_ - log_f_at(0));
   // Where f would lie if the ratio were 1 is near where it lies.
-  const double near = std::max((log_f - kFirstOctave) * kStepsPerOctave, 0.0);
+  const double near = std::max((log_f - first_octave_) * kStepsPerOctave, 0.0);
   std::size_t below = std::min(static_cast<std::size_t>(near), last_ - 1);
   while (log_f_at(below) > log_f) --below;
   while (log_f_at(below + 1) <= log_f) ++below;
   const double first = log_f_at(below), second = log_f_at(below + 1);
-  return std::exp2(octave_of(below) + (log_f - first) / ((second - first) * kStepsPerOctave));
+  const double place = static_cast<double>(below) + (log_f - first) / (second - first);
+  return std::exp2(first_octave_ + place / kStepsPerOctave);
 }
 
 const SamplerScale& sampler_scale(std::size_t dimension) {

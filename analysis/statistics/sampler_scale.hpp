@@ -43,25 +43,33 @@ class SamplerScale {
     }
 
     const double *lower_, *upper_;
-    double part_;       ///< of the way from `lower_` to `upper_`
-    std::size_t last_;  ///< column
-    double factor_;     ///< d F by the NEES
-    double beyond_;     ///< chi-square by d F beyond the last column
+    double part_;          ///< of the way from `lower_` to `upper_`
+    std::size_t last_;     ///< column
+    double factor_;        ///< d F by the NEES
+    double first_octave_;  ///< log2 of the chi-square of the first column
+    double beyond_;        ///< chi-square by d F beyond the last column
   };
 
   /// Whether the NEES of an ideal sampler has a mean: more than dimension + 2 effective draws.
   bool can_judge(const EffectiveDraws& draws) const;
   /// For draws that can_judge() takes.
   Line line(const EffectiveDraws& draws) const;
+  /// The mean of the converted NEES over the dimension, to a thousandth, if squared errors are
+  /// `ratio` times those of an ideal sampler: 1 for 1, and nearer to 1 than `ratio` otherwise,
+  /// since the F law has heavier tails than the chi-square.
+  double shown_ratio(double ratio, const EffectiveDraws& draws) const;
   double operator()(double nees, const EffectiveDraws& draws) const { return line(draws)(nees); }
 
  private:
   static constexpr std::size_t kFreedoms = 128;  // steps of 1 / freedom
 
+  /// log2 of the chi-square.
+  double octave_of(std::size_t column) const;
   /// {chi-square} log2 of d F, for a step of 1 / freedom.
   const double* row(std::size_t step) const;
 
   double dimension_;
+  double last_octave_;   ///< of the value beyond which the scale is linear
   std::size_t columns_;  ///< values of the chi-square, at equal steps of their logarithm
   /// {1 / freedom, chi-square} Rows are made when they are first needed, by any thread: studies
   /// need few of them.

@@ -9,8 +9,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
+#include <string>
+#include <vector>
 
 namespace montecarta::analysis {
 namespace {
@@ -188,6 +191,30 @@ TEST(CellSums, LeavesOutAndCountsARunWithoutAJudgedScan) {
   analysis.cells[0].label = "kf";
   EXPECT_EQ(cautions(analysis.cells, {}).front(),
             "Runs without a scan that can be judged: kf 1 of 12.");
+}
+
+TEST(Cautions, SayHowFewParticlesShowARatioOfTwo) {
+  CellAnalysis cell;
+  cell.label = "pf";
+  cell.particles = 20;
+  cell.leading = Moments::corrected;
+  cell.nees.push_back({.moments = Moments::corrected, .series = {.dimension = 3, .samples = 10}});
+  const std::array<ScoreTable::Value, 1> ess = {{{"ess", 20.0}}};
+  cell.scores.add(ess);
+  EXPECT_NEAR(shown_for_twice(cell).value(), 1.789, 2e-3);
+  const std::vector<std::string> said = cautions({&cell, 1}, {});
+  ASSERT_EQ(said.size(), 1u);
+  EXPECT_TRUE(said[0].ends_with("pf 1.79.")) << said[0];
+  cell.particles = 40;  // of which 20 are effective
+  EXPECT_LT(shown_for_twice(cell).value(), 1.9);
+  cell.particles = 20'000;
+  cell.scores.add(std::array<ScoreTable::Value, 1>{{{"ess", kNaN}}});
+  EXPECT_GT(shown_for_twice(cell).value(), 1.99) << "all count if no effective number is stored";
+  EXPECT_TRUE(cautions({&cell, 1}, {}).empty());
+  cell.particles = 5;
+  EXPECT_FALSE(shown_for_twice(cell).has_value()) << "so few are not judged";
+  cell.nees[0].moments = cell.leading = Moments::spread;
+  EXPECT_FALSE(shown_for_twice(cell).has_value()) << "a Kalman filter draws nothing";
 }
 
 TEST(CellSums, CountsWhatIsSingularOrUnusable) {

@@ -50,23 +50,61 @@ TEST(SamplerScale, SlowMakesTheNeesOfIdealSamplersChiSquare) {
   }
 }
 
-/// The chi-square value that is as probable as `nees` is under Hotelling's F, without a table.
+/// (4.2) without a table: the chi-square value that is as probable as `nees` is under Hotelling's
+/// F; beyond a tail of one in a million it is proportional.
 double exactly(double nees, double d, double M) {
+  constexpr double kLastTail = 1e-6;
   const boost::math::fisher_f ideal(d, M - d);
-  const double above =
-      boost::math::cdf(boost::math::complement(ideal, nees * (M - d) / (d * (M + 1.0))));
-  return boost::math::quantile(boost::math::complement(boost::math::chi_squared(d), above));
+  const boost::math::chi_squared scale(d);
+  const double f = nees * (M - d) / (d * (M + 1.0));
+  const double last = boost::math::quantile(boost::math::complement(ideal, kLastTail));
+  const double above = boost::math::cdf(boost::math::complement(ideal, std::min(f, last)));
+  return boost::math::quantile(boost::math::complement(scale, above)) * std::max(1.0, f / last);
 }
 
-TEST(SamplerScale, IsRightToAThousandthBetweenItsEntries) {
+TEST(SamplerScale, IsRightToAThousandthBetweenItsEntriesAndBeyondThem) {
   for (const std::size_t dimension : {1u, 2u, 3u}) {
     const SamplerScale scale(dimension);
     const auto d = static_cast<double>(dimension);
     for (const double M : {d + 2.013, d + 3.7, 10.0, 29.3, 71.0, 555.5}) {
-      for (double nees = 0.01; exactly(nees, d, M) < 20.0; nees *= 1.037) {
+      for (double nees = 0.01; exactly(nees, d, M) < 100.0; nees *= 1.037) {
         EXPECT_NEAR(scale(nees, equal(M)) / exactly(nees, d, M), 1.0, 1e-3) << nees << " of " << M;
       }
     }
+  }
+}
+
+// Against integrals by scipy.stats.f over 400,000 equally probable values.
+TEST(SamplerScale, ShowsTheRatioOfFewDrawsTooNearToOne) {
+  struct Known {
+    double particles, ratio, shown;
+  };
+  const SamplerScale scale(3);
+  for (const Known& known :
+       {Known{6, 1, 1.0}, Known{1000, 1, 1.0}, Known{6, 2, 1.4355}, Known{10, 0.5, 0.5814},
+        Known{10, 2, 1.6236}, Known{20, 2, 1.7893}, Known{100, 2, 1.9523}, Known{30, 4, 3.2892}}) {
+    EXPECT_NEAR(scale.shown_ratio(known.ratio, equal(known.particles)) / known.shown, 1.0, 1e-3)
+        << known.ratio << " of " << known.particles;
+  }
+}
+
+// 20,000 draws; the tolerance is 4 standard errors.
+TEST(SamplerScale, SlowShowsOfDrawnSamplersTheRatioThatItComputes) {
+  const SamplerScale scale(3);
+  constexpr double kRatio = 2.0, kDraws = 20'000.0;
+  for (const std::size_t particles : {10u, 20u, 100u}) {
+    const EffectiveDraws draws = equal(static_cast<double>(particles));
+    RngStream draw({43, particles, 0, 0, Draw::test});
+    double sum = 0.0, squares = 0.0;
+    for (int k = 0; k < 20'000; ++k) {
+      const double shown = scale(kRatio * ideal_nees(particles, draw), draws) / 3.0;
+      sum += shown;
+      squares += shown * shown;
+    }
+    const double mean = sum / kDraws;
+    EXPECT_NEAR(mean, scale.shown_ratio(kRatio, draws),
+                4.0 * std::sqrt((squares / kDraws - mean * mean) / kDraws))
+        << particles << " particles";
   }
 }
 
