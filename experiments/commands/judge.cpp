@@ -13,6 +13,8 @@
 #include "experiments/text/words.hpp"
 
 #include <iostream>
+#include <string>
+#include <vector>
 
 namespace montecarta::experiments {
 namespace {
@@ -47,10 +49,11 @@ int judge_command(const Arguments& arguments) {
   const JudgingOptions options = judging_options(arguments);
   const JudgedFiles files =
       pair_files(arguments.operands(), arguments.texts("truth"), arguments.text("cell"));
-  judge_files(files, options);
+  const std::vector<std::string> notes = judge_files(files, options);
   const ResultFile file(options.output);
   print_summary(std::cout, analyze(file, 0.95, parallel_of(arguments)), engine::output_width());
   print_where_to_look(options.output.string(), "");
+  for (const std::string& note : notes) std::cerr << "montecarta: note: " << note << "\n";
   std::cerr << "montecarta: " << files.runs.size() << " runs of " << files.cells.size()
             << (files.cells.size() == 1 ? " estimator" : " estimators") << ", stored in "
             << options.output.string() << "\n";

@@ -144,14 +144,35 @@ LongestRun longest_of(const JudgedFiles& files, double tolerance) {
                    "one row for each time");
 }
 
-void write_runs(const JudgedFiles& files, const JudgingOptions& options, const LongestRun& longest,
-                const StudyPlan& plan, ResultWriter& writer) {
+/// Innovations with an angle beyond pi, which a difference of two angles is not.
+class UnwrappedInnovations {
+ public:
+  void add(const StateRows& rows) {
+    if (count_ == 0) first_ = rows.first_unwrapped;
+    count_ += rows.unwrapped_innovations;
+  }
+  std::vector<std::string> notes() const {
+    if (count_ == 0) return {};
+    return {"innovations with an angle beyond pi: " + std::to_string(count_) + ", the first in " +
+            first_ + " (they are judged as they are): wrap differences of angles to -pi to pi"};
+  }
+
+ private:
+  std::uint64_t count_ = 0;
+  std::string first_;
+};
+
+std::vector<std::string> write_runs(const JudgedFiles& files, const JudgingOptions& options,
+                                    const LongestRun& longest, const StudyPlan& plan,
+                                    ResultWriter& writer) {
   const std::vector<RecordLayout> layouts = layouts_of(plan, Detail::usual);
+  UnwrappedInnovations unwrapped;
   for (std::size_t run = 0; run < files.runs.size(); ++run) {
     const StateRows truth = read_truth(files.truth[run], longest.rows.shape);
     for (std::size_t c = 0; c < files.cells.size(); ++c) {
       const fs::path& path = files.cells[c].of_run[run];
       const StateRows rows = read_with_innovations(path, options.match.tolerance);
+      unwrapped.add(rows);
       expect_alike(rows, path, longest.rows, longest.path, options.match.tolerance);
       std::vector<Eigen::VectorXd> truths;
       for (const double time : longest.rows.time)
@@ -164,6 +185,7 @@ void write_runs(const JudgedFiles& files, const JudgingOptions& options, const L
       writer.write(c, run, record_of(layouts[c], rows, truths, *options.convention));
     }
   }
+  return unwrapped.notes();
 }
 
 /// The convention that the user gave, or the only one that the state may have. Throws StudyError if
@@ -270,7 +292,7 @@ StudyPlan imported_plan(const JudgedFiles& files, const StateRows& first,
 
 }  // namespace
 
-void judge_files(const JudgedFiles& files, const JudgingOptions& given) {
+std::vector<std::string> judge_files(const JudgedFiles& files, const JudgingOptions& given) {
   const LongestRun longest = longest_of(files, given.match.tolerance);
   JudgingOptions options = given;
   options.convention = stated_error(longest, given.convention);
@@ -278,8 +300,9 @@ void judge_files(const JudgedFiles& files, const JudgingOptions& given) {
   ResultWriter writer =
       ResultWriter::create(options.output, plan, options.provenance, options.existing);
   try {
-    write_runs(files, options, longest, plan, writer);
+    std::vector<std::string> notes = write_runs(files, options, longest, plan, writer);
     writer.finish();
+    return notes;
   } catch (...) {
     std::error_code ignored;
     fs::remove(writer.unfinished(), ignored);

@@ -10,7 +10,9 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace montecarta::experiments {
 
@@ -27,8 +29,9 @@ struct JudgingOptions {
 
 /// Reads estimates and truths run by run, and writes their errors as a result file that can be
 /// analysed like that of a study. Trajectories are not aligned. Memory does not grow with the
-/// number of runs. Throws StudyError with file, line and remedy, and then leaves no file.
-void judge_files(const JudgedFiles& files, const JudgingOptions& options);
+/// number of runs. Returns notes on contents that are judged as they are, but are likely a mistake.
+/// Throws StudyError with file, line and remedy, and then leaves no file.
+std::vector<std::string> judge_files(const JudgedFiles& files, const JudgingOptions& options);
 
 /// Beginning of the text of an imported study, with which no study file begins.
 inline constexpr std::string_view kImportedSection = "[imported]";

@@ -338,6 +338,20 @@ std::pair<double, std::uint32_t> squares_of(const CsvRows& file, const EstimateF
   return {sample.value, sample.is_usable() ? static_cast<std::uint32_t>(sample.rank) : dimension};
 }
 
+/// Counts a row of innovations if one of them is an angle beyond pi.
+void count_unwrapped(const CsvRows& file, const EstimateFields& fields, StateRows& rows) {
+  if (fields.nis) return;
+  constexpr double kMost = kPi * (1.0 + 1e-6);  // pi itself may be printed with few digits
+  for (std::size_t k = 0; k < fields.state.size(); ++k) {
+    if (!is_angle(fields.shape, static_cast<Eigen::Index>(k))) continue;
+    const double angle = file.number(fields.state[k], "number");
+    if (std::abs(angle) <= kMost) continue;
+    if (rows.unwrapped_innovations++ > 0) return;
+    rows.first_unwrapped = file.place() + ": " + fields.shape.columns[k] + " " + to_text(angle);
+    return;
+  }
+}
+
 }  // namespace
 
 std::string name_of(StateKind kind) {
@@ -431,6 +445,7 @@ void read_innovations(const fs::path& path, const fs::path& estimates, double to
   while (file.next()) {
     const double time = file.time(CsvRows::Order::not_earlier);
     const auto [row_nis, row_dof] = squares_of(file, fields);
+    count_unwrapped(file, fields, rows);
     if (rows.time.empty()) continue;
     const std::size_t k = place_in(rows, time, tolerance, file, estimates);
     nis[k] += row_nis;

@@ -43,6 +43,8 @@ struct StateRows {
   std::vector<Eigen::MatrixXd> covariance;  ///< {row}{d, d} as in the file; empty for a truth
   std::vector<double> nis;                  ///< {row} empty if the file has none
   std::vector<std::uint32_t> nis_dof;       ///< {row} empty if the file has none
+  std::uint64_t unwrapped_innovations = 0;  ///< with an angle beyond pi
+  std::string first_unwrapped;              ///< of them, with file and line
 };
 
 /// Reads estimates (mean and covariance over time) from CSV. Throws StudyError with file, line and
@@ -75,8 +77,8 @@ std::optional<std::filesystem::path> innovations_beside(const std::filesystem::p
 /// CSV with `time_s`, then either `nis,nis_dof`, or the components of the innovation and cov_A_B of
 /// their covariance, as in a file of estimates. Rows with the same time are parts of one scan and
 /// are added up. Estimates without a row have observed nothing. The NIS is NaN if the covariance is
-/// not positive definite. Throws StudyError with file, line and remedy, also if no estimate has the
-/// time of a row within `tolerance` [s].
+/// not positive definite. Angles beyond pi are used as they are, and counted. Throws StudyError
+/// with file, line and remedy, also if no estimate has the time of a row within `tolerance` [s].
 void read_innovations(const std::filesystem::path& path, const std::filesystem::path& estimates,
                       double tolerance, StateRows& rows);
 

@@ -277,6 +277,23 @@ TEST_F(JudgeLayouts, WhatLiesBesideIsJudgedAndPartOfTheStudy) {
   EXPECT_THAT(judge_by("world", files).err, HasSubstr("estimate.csv: no nis"));
 }
 
+TEST_F(JudgeLayouts, InnovationsOfAnAngleBeyondPiAreNoted) {
+  write_estimates();
+  std::filesystem::create_directory(folder_ / "run_0");
+  std::filesystem::create_directory(folder_ / "run_1");
+  for (const char* run : {"0", "1"}) {
+    const std::string to = "run_" + std::string(run);
+    write(to + "/estimate.csv", text_of("e_" + std::string(run) + ".csv"));
+    write(to + "/innovation.csv", "time_s,bearing_rad,cov_0_0\n1,6.25,1\n");
+  }
+  const std::vector<std::string> files = {"run_0/estimate.csv", "run_1/estimate.csv"};
+  EXPECT_THAT(judge_by("world", files).err,
+              HasSubstr("beyond pi: 2, the first in run_0/innovation.csv:2: bearing_rad 6.25"));
+  write("run_0/innovation.csv", "time_s,bearing_rad,cov_0_0\n1,0.25,1\n");
+  write("run_1/innovation.csv", "time_s,bearing_rad,cov_0_0\n1,0.25,1\n");
+  EXPECT_THAT(judge_by("world", files).err, Not(HasSubstr("beyond pi")));
+}
+
 TEST_F(JudgeLayouts, TheHintIsSaidByAnalyzeAndReportFromTheFileAlone) {
   std::string P = ",0.01,0,0,0,1,0,0,0,0.01\n", header = "time_s,x_m,y_m,heading_rad";
   for (int k = 0; k < 9; ++k)

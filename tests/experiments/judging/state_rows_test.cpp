@@ -149,6 +149,16 @@ TEST_F(InnovationFiles, HaveInnovationsAndTheirCovariance) {
   EXPECT_THAT(rows.nis_dof, ElementsAre(0U, 2U, 2U));
 }
 
+TEST_F(InnovationFiles, CountAnglesBeyondPi) {
+  const std::string header = "time_s,range_m,bearing_rad,cov_0_0,cov_0_1,cov_1_1\n";
+  const StateRows wrapped = read(header + "1,9,3.14159265,1,0,1\n2,9,-3,1,0,1\n");
+  EXPECT_EQ(wrapped.unwrapped_innovations, 0U) << "a range may be 9";
+  const StateRows rows = read(header + "1,0,3,1,0,1\n2,0,6.25,1,0,1\n3,0,-3.5,1,0,1\n");
+  EXPECT_EQ(rows.unwrapped_innovations, 2U);
+  EXPECT_THAT(rows.first_unwrapped, HasSubstr("innovation.csv:3: bearing_rad 6.25"));
+  EXPECT_NEAR(rows.nis[1], 6.25 * 6.25, 1e-12) << "they are used as they are";
+}
+
 TEST_F(InnovationFiles, AreRefusedWithFileLineAndRemedy) {
   const std::string header = "time_s,nis,nis_dof\n";
   EXPECT_THAT(complaint(header + "1.5,1,1\n"), HasSubstr("innovation.csv:2: no estimate in"));
