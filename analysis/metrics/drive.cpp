@@ -481,8 +481,7 @@ std::vector<TextTable::Entry> drive_row(const CellAnalysis& cell, const JudgedRe
           {"heading" + level, judged(block_text(drive, ErrorBlock::heading))},
           {"fixes", std::to_string(drive.mean.fixes)},
           {"effective", judged(readable(drive.mean.leads().effective_samples))},
-          {"NIS per component",
-           innovations == nullptr ? "-" : readable(innovations->verdict.ratio_estimate())},
+          {"NIS per component", innovations == nullptr ? "-" : readable(innovations->ratio)},
           {"innovations", innovations == nullptr ? "-" : whiteness_in_words(*innovations),
            Align::left}};
 }

@@ -202,7 +202,7 @@ ConventionHints::ConventionHints(std::size_t components, std::size_t scans)
 void ConventionHints::add(const std::array<std::vector<double>, kErrorConventions.size()>& nees) {
   ++runs_;
   for (std::size_t k = 0; k < nees_.size(); ++k) {
-    for (std::size_t s = 0; s < nees[k].size(); ++s) nees_[k].add(s, nees[k][s], components_);
+    if (!nees[k].empty()) nees_[k].add(nees[k], components_);
   }
 }
 

@@ -18,6 +18,8 @@
 namespace montecarta::analysis {
 namespace {
 
+constexpr double kJointFamilies = 2.0;  // size and scans
+
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// e' P^-1 e by Cholesky of the correlation matrix, so that the pivots are independent of units.
@@ -246,11 +248,13 @@ JointNeesSums::JointNeesSums(std::span<const double> times)
 void JointNeesSums::add(std::span<const JointScore> run) {
   if (run.empty()) return;
   ++n_runs_;
+  std::vector<double> nees(times_.size(), kNaN), dimensions(times_.size());
   for (std::size_t k = 0; k < run.size(); ++k) {
-    const auto dimension = static_cast<double>(run[k].dimension);
-    all_dimensions_[k] += dimension;
-    nees_.add(k, run[k].nees, dimension);
+    nees[k] = run[k].nees;
+    dimensions[k] = static_cast<double>(run[k].dimension);
+    all_dimensions_[k] += dimensions[k];
   }
+  nees_.add(nees, dimensions);
 }
 
 JointConsistency JointNeesSums::result(double level, bool identities_known, double within) const {
@@ -262,20 +266,20 @@ JointConsistency JointNeesSums::result(double level, bool identities_known, doub
     return found;
   }
   found.verdict = judge(nees_.families(level, times_), level, within, n_runs_);
-  const FamilyTest* rows = found.verdict.find(Family::scan);
-  auto member = rows == nullptr ? std::vector<Member>::const_iterator() : rows->members.begin();
+  const auto judged = std::ranges::count_if(
+      nees_.scans(), [](const SummedError::Scan& row) { return row.dimensions > 0.0; });
+  const double of_each = 1.0 - (1.0 - level) / (kJointFamilies * static_cast<double>(judged));
   for (std::size_t k = 0; k < times_.size(); ++k) {
     const SummedError::Scan& row = nees_.scans()[k];
-    const bool is_defined = row.runs > 0.0;
+    const bool is_defined = row.n() > 0.0;
     found.samples += n_runs_;
-    found.undefined += n_runs_ - static_cast<std::uint64_t>(row.runs);
-    found.runs.push_back(static_cast<std::uint32_t>(row.runs));
+    found.undefined += n_runs_ - static_cast<std::uint64_t>(row.n());
+    found.runs.push_back(static_cast<std::uint32_t>(row.n()));
     found.dimension.push_back(all_dimensions_[k] / static_cast<double>(n_runs_));
     found.average.push_back(row.ratio());
     found.bounds.push_back({kNaN, kNaN});
     if (!is_defined) continue;
-    const Interval& ratio = (member++)->simultaneous;
-    found.bounds.back() = {row.ratio() / ratio.upper, row.ratio() / ratio.lower};
+    found.bounds.back() = nees_bounds(static_cast<std::uint64_t>(row.dimensions), 1, of_each);
   }
   return found;
 }

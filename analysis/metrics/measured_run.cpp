@@ -89,7 +89,8 @@ void turn_pose(const Direction<double>& ahead, const std::vector<double>& covari
 void put_on_normal_scale(const DrawsScales& scales, WhitenedPose& pose) {
   double squares = 0.0;
   for (const double u : pose.whitened) squares += std::isnan(u) ? 0.0 : u * u;
-  if (squares > 0.0) pose.whitened *= std::sqrt((*scales.of[pose.rank - 1])(squares) / squares);
+  if (pose.rank > 0 && squares > 0.0)
+    pose.whitened *= std::sqrt((*scales.of[pose.rank - 1])(squares) / squares);
   for (double& z : pose.standardised) z = std::copysign(std::sqrt((*scales.of[0])(z * z)), z);
 }
 
@@ -229,6 +230,8 @@ void RunMetrics::whiten_pose(const RunRows& rows, std::size_t s,
   WhitenedPose pose;
   if (!scales && &moments == &estimate_of(rows)) {
     pose = estimates_[s];
+    add_errors_of_exact(errors_[s], covariances_[s], least_pose_deviation(),
+                        whitened_.errors_of_exact);
   } else {
     const double draws = scales ? scales->draws : std::numeric_limits<double>::infinity();
     const Pose mean = pose_of(moments.mean, s), truth = pose_of(rows.truth, s);
@@ -236,8 +239,9 @@ void RunMetrics::whiten_pose(const RunRows& rows, std::size_t s,
     Eigen::Matrix3d P;
     turn_pose(ahead_in(frame, mean, truth, draws), moments.covariance, s, error, P);
     analysis::whiten_pose(error, P, pose);
+    add_errors_of_exact(error, P, least_pose_deviation(), whitened_.errors_of_exact);
   }
-  if (scales && pose.rank > 0) put_on_normal_scale(*scales, pose);
+  if (scales) put_on_normal_scale(*scales, pose);
   Eigen::Vector3d::Map(whitened_.whitened.data() + 3 * s) = pose.whitened;
   Eigen::Vector3d::Map(whitened_.standardised.data() + 3 * s) = pose.standardised;
 }
@@ -252,6 +256,8 @@ void RunMetrics::correct_and_whiten(const RunRows& rows, std::size_t particles, 
   const std::size_t d = whitened_.dimension, scans = d == 0 ? 0 : leading->value[0].size();
   whitened_.whitened.assign(scans * d, kNaN);
   whitened_.standardised.assign(scans * d, kNaN);
+  whitened_.errors_of_exact.assign(d, 0.0);
+  whitened_.number = rows.run;
   const Eigen::VectorXd exact = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(d));
   for (std::size_t s = 0; s < scans; ++s) {
     std::optional<DrawsScales> scales;
@@ -259,14 +265,17 @@ void RunMetrics::correct_and_whiten(const RunRows& rows, std::size_t particles, 
       if (is_drawn(rows, s)) scales = scales_of(draws_at(rows, particles, s));
       correct_spread(s, scales);
     }
-    if (std::isnan(leading->value[0][s])) continue;
+    const bool is_known = leading->rank[0][s] == 0;  // exactly, by all of its components
+    if (std::isnan(leading->value[0][s]) && !is_known) continue;
     if (rows.error.components() == 0) {
       whiten_pose(rows, s, scales, frame);
       continue;
     }
-    whiten(rows.error.error(s), rows.error.covariance_of(s), exact,
-           std::span(whitened_.whitened).subspan(d * s, d),
+    const Eigen::VectorXd error = rows.error.error(s);
+    const Eigen::MatrixXd P = rows.error.covariance_of(s);
+    whiten(error, P, exact, std::span(whitened_.whitened).subspan(d * s, d),
            std::span(whitened_.standardised).subspan(d * s, d));
+    add_errors_of_exact(error, P, exact, whitened_.errors_of_exact);
   }
 }
 
@@ -304,6 +313,8 @@ RunCriteria criteria_of(const ResultFile& file, double level, double within) {
                        .frame = error_frame_of(file),
                        .calibrates = noise_is_matched(file),
                        .looks = looks_in(file.study_text(), file.study_runs()),
+                       .share_of_runs = static_cast<double>(file.runs().size()) /
+                                        static_cast<double>(file.study_runs()),
                        .components = {kErrorComponents.begin(), kErrorComponents.end()}};
   const ImportedState imported =
       file.cells().empty() ? ImportedState() : imported_state(file.cells().front());

@@ -133,6 +133,7 @@ struct RunCriteria {
   bool calibrates = false;  ///< whether the PITs of errors are judged: only with matched noise
   /// Runs at each interim analysis, if cells stop when their verdict is known.
   std::vector<std::uint64_t> looks = {};
+  double share_of_runs = 1.0;  ///< of the study's that the file has: less than 1 in a shard
   /// Components of the errors that are judged.
   std::vector<std::string> components = {};
   /// {run of the study} Empty if all runs process one drive. Otherwise `times` are those of the

@@ -3,6 +3,7 @@
 
 #include "analysis/statistics/distributions.hpp"
 #include "analysis/statistics/spread.hpp"
+#include "analysis/verdict/whole_error.hpp"
 
 #include <Eigen/Eigenvalues>
 
@@ -35,7 +36,6 @@ constexpr double kRounding = 1e-9;          // error of a component that is know
 constexpr double kFarthestOutside = 10.0;   // standard deviations; second-order effects are smaller
 constexpr double kLargestAsymmetry = 1e-6;  // of the deviations: as six printed digits leave it
 constexpr double kLeastTail = 1e-6;         // beyond, a consistent filter hardly ever is
-constexpr double kLargestError = 1e30;      // in deviations; its square is kLargestNees
 const Eigen::Vector3d kLeastDeviation{1e-9, 1e-9, 1e-10};
 
 template <int D>
@@ -108,24 +108,18 @@ std::optional<Whitened<3>> whitened_pose(const Eigen::Vector3d& error,
 
 constexpr Nees kUnusableSample = {kNaN, Nees::kUnusable};
 
-/// Components of an error, sorted by their variances.
-struct Components {
-  std::vector<Eigen::Index> open;  ///< of a variance above the least
-  bool is_excluded = false;        ///< one that is known exactly has an error of more than rounding
-};
-
-/// nullopt if a variance is negative, or a covariance larger than two variances allow.
-std::optional<Components> open_components(const Eigen::VectorXd& error, const Eigen::MatrixXd& P,
-                                          const Eigen::VectorXd& least_variance) {
-  Components found;
-  for (Eigen::Index i = 0; i < error.size(); ++i) {
+/// The components with a variance above the least; nullopt if a variance is negative, or a
+/// covariance larger than two variances allow.
+std::optional<std::vector<Eigen::Index>> open_components(const Eigen::MatrixXd& P,
+                                                         const Eigen::VectorXd& least_variance) {
+  std::vector<Eigen::Index> found;
+  for (Eigen::Index i = 0; i < P.rows(); ++i) {
     if (P(i, i) > least_variance(i)) {
-      found.open.push_back(i);
+      found.push_back(i);
       continue;
     }
     if (P(i, i) < -least_variance(i)) return std::nullopt;
-    found.is_excluded = found.is_excluded || std::abs(error(i)) > kRounding;
-    for (Eigen::Index j = 0; j < error.size(); ++j) {
+    for (Eigen::Index j = 0; j < P.rows(); ++j) {
       const double most = std::max(P(j, j), least_variance(j)) * least_variance(i);
       const double covariance = P(std::max(i, j), std::min(i, j));
       if (i != j && covariance * covariance > most) return std::nullopt;
@@ -134,15 +128,14 @@ std::optional<Components> open_components(const Eigen::VectorXd& error, const Ei
   return found;
 }
 
-/// NEES in the range of a singular P. An error that P excludes has the largest NEES: if a component
-/// that is known exactly has an error of more than rounding, or if the error is farther outside the
-/// range than second-order effects explain.
+/// NEES in the range of a singular P, of the components that are not known exactly. An error that
+/// is farther outside the range than second-order effects explain has the largest NEES.
 Nees nees_in_range(const Eigen::VectorXd& error, const Eigen::MatrixXd& P,
                    const Eigen::VectorXd& least_variance) {
-  const std::optional<Components> components = open_components(error, P, least_variance);
+  const auto components = open_components(P, least_variance);
   if (!components) return kUnusableSample;
-  const auto& [open, is_excluded] = *components;
-  if (open.empty()) return is_excluded ? Nees{kLargestNees, 1} : Nees{kNaN, 0};
+  const std::vector<Eigen::Index>& open = *components;
+  if (open.empty()) return {kNaN, 0};
   const Eigen::MatrixXd block = P(open, open);
   const Eigen::VectorXd scale = block.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd correlation = scale.asDiagonal() * block * scale.asDiagonal();
@@ -161,7 +154,7 @@ Nees nees_in_range(const Eigen::VectorXd& error, const Eigen::MatrixXd& P,
     }
   }
   const bool is_far_outside = !(outside <= kFarthestOutside * kFarthestOutside);
-  sample.value = is_excluded || is_far_outside ? kLargestNees : capped(sample.value);
+  sample.value = is_far_outside ? kLargestNees : capped(sample.value);
   return sample;
 }
 
@@ -238,20 +231,34 @@ std::size_t whiten(const Eigen::VectorXd& error, const Eigen::MatrixXd& covarian
   const Eigen::VectorXd least = least_deviation.cwiseAbs2();
   std::vector<Eigen::Index> open;
   for (Eigen::Index i = 0; i < error.size(); ++i) {
-    if (covariance(i, i) > least(i)) open.push_back(i);
+    if (!(covariance(i, i) > least(i))) continue;
+    open.push_back(i);
+    standardised[static_cast<std::size_t>(i)] =
+        std::clamp(error(i) / std::sqrt(covariance(i, i)), -kLargestError, kLargestError);
   }
   const auto found = whitened<Eigen::Dynamic>(error(open), covariance(open, open), least(open));
   if (!found) return 0;
   const double largest = open.empty() ? 0.0 : found->error.cwiseAbs().maxCoeff();
   const double scale = largest > kLargestError ? kLargestError / largest : 1.0;
   for (std::size_t k = 0; k < open.size(); ++k) {
-    const auto component = static_cast<std::size_t>(open[k]);
-    const double by_deviation = error(open[k]) / std::sqrt(covariance(open[k], open[k]));
-    whitened_error[component] = scale * found->error(static_cast<Eigen::Index>(k));
-    standardised[component] = std::clamp(by_deviation, -kLargestError, kLargestError);
+    whitened_error[static_cast<std::size_t>(open[k])] =
+        scale * found->error(static_cast<Eigen::Index>(k));
   }
   return open.size();
 }
+
+void add_errors_of_exact(const Eigen::VectorXd& error, const Eigen::MatrixXd& covariance,
+                         const Eigen::VectorXd& least_deviation, std::span<double> largest) {
+  if (!error.allFinite() || !covariance.allFinite()) return;
+  for (Eigen::Index i = 0; i < error.size(); ++i) {
+    const double size = std::abs(error(i)), least_variance = std::pow(least_deviation(i), 2);
+    double& found = largest[static_cast<std::size_t>(i)];
+    const bool is_exact = std::abs(covariance(i, i)) <= least_variance;
+    if (is_exact && size > kRounding) found = std::max(found, size);
+  }
+}
+
+const Eigen::Vector3d& least_pose_deviation() { return kLeastDeviation; }
 
 double on_full_scale(const Nees& sample, std::size_t dimension) {
   if (sample.rank <= 0) return kNaN;

@@ -57,7 +57,8 @@ inline constexpr double kLargestNees = 1e60;
 struct Nees {
   static constexpr int kUnusable = -1;
 
-  /// e' P^-1 e in the range of P; NaN if the sample is unusable or the rank is 0.
+  /// e' P^-1 e in the range of P, without components that are known exactly; NaN if the sample is
+  /// unusable or the rank is 0.
   double value;
   /// Rank of P: the degrees of freedom of the value. kUnusable if error or covariance is not finite
   /// or the covariance is not positive semidefinite.
@@ -82,16 +83,24 @@ Nees imported_nees(const Eigen::VectorXd& error, const Eigen::MatrixXd& covarian
 
 /// Writes the error in units of its covariance (STATISTICS 5): L^-1 e with P = L L', and each
 /// component divided by its own deviation, cut to 1e30 deviations. Components with a deviation of
-/// at most `least_deviation` are known exactly and become NaN; all become NaN if the rest of P is
-/// singular or not finite. Returns the number of components that are not NaN.
+/// at most `least_deviation` are known exactly and become NaN. If the rest of P is singular all of
+/// L^-1 e become NaN. Returns the number of its components that are not NaN.
 std::size_t whiten(const Eigen::VectorXd& error, const Eigen::MatrixXd& covariance,
                    const Eigen::VectorXd& least_deviation, std::span<double> whitened_error,
                    std::span<double> standardised);
 
+/// Replaces `largest` {component} by errors that are larger and of components with a deviation of
+/// at most `least_deviation`; by none that rounding explains (1e-9).
+void add_errors_of_exact(const Eigen::VectorXd& error, const Eigen::MatrixXd& covariance,
+                         const Eigen::VectorXd& least_deviation, std::span<double> largest);
+
+/// Poses with deviations up to these [m, m, rad] are known exactly.
+const Eigen::Vector3d& least_pose_deviation();
+
 /// A pose error in units of its covariance P, as whiten() computes it.
 struct WhitenedPose {
   Eigen::Vector3d whitened, standardised;
-  std::size_t rank = 0;       ///< components that are not NaN
+  std::size_t rank = 0;       ///< components of `whitened` that are not NaN
   double determinant = kNaN;  ///< of P; NaN if it is singular
 };
 

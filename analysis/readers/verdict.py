@@ -7,13 +7,17 @@ WITHIN is 1.1 if not given; LEVEL is 0.95, or verdict_level of cells.csv if cell
 The cell must have poses by one Gaussian of full rank at every scan, and 3 complete runs."""
 import sys
 from collections import Counter, namedtuple
+from itertools import combinations
 
 import h5py
 import numpy as np
-from scipy import special, stats
+from scipy import stats
 from scipy.spatial.transform import Rotation
 
-NAMES, RATIOS = ["forward", "left", "heading"], ["size", "component", "stretch", "scan"]
+NAMES = ["forward", "left", "heading"]
+RATIOS = ["size", "component", "stretch", "component_by_stretch", "scan"]
+NOT_PROVED = ["component_by_stretch", "scan", "bias_by_stretch", "correlation_by_stretch",
+              "between_runs"]  # "consistent" needs that no deviation beyond the margin is shown
 Member = namedtuple("Member", "family name estimate p interval")  # interval(level)
 
 
@@ -43,87 +47,152 @@ def errors_of(path, label):
     return np.linalg.solve(np.linalg.cholesky(P), e[..., None])[..., 0], e / sigma, times
 
 
-def products(x):
-    """(5.1): G of x {run, term}, the mean of G_ij^2, and that mean without each run."""
-    n, x = len(x), x / np.sqrt((x**2).mean(axis=0))
-    G = x @ x.T
-    squares = (G**2).sum(axis=1) - np.diag(G) ** 2
-    total = squares.sum()
-    return G, total / (n * (n - 1)), (total - 2 * squares) / ((n - 1) * (n - 2))
+def law(values, above, below, is_ratio=False):
+    """(5.1), (5.2): p-value of an expectation and interval of a level, by one value of each run;
+    `above` and `below` are the skewnesses for a mean above and below the expectation."""
+    n, mean, sd = len(values), values.mean(), values.std(ddof=1)
 
+    def p_value(expected):
+        x = (mean - expected) / sd
+        g = above if x > 0 else below
+        h = (max(0, 1 + g * x / 3) ** 3 - 1) / g + g / (6 * n) if abs(g) > 1e-6 else x
+        p = 2 * stats.t.sf(abs(h) * np.sqrt(n), n - 1)
+        far = is_ratio and mean < expected
+        return min(p, 2 * stats.chi2.cdf(4 * n * mean / expected, n)) if far else p
 
-def traces(x, block):
-    """(5.2), (5.3): t1, t2, t3 and the degrees of freedom of t2."""
-    n, t1 = x.shape
-    if n < 20:
-        return t1, t1**2 / block, t1**3 / block**2, np.inf
-    G, mean, without = products(x)
-    error = np.sqrt((n - 1) / n * ((without - mean) ** 2).sum())
-    t2 = np.clip((n + 2) / n * (mean + error), t1, t1**2 / block)
-    G = G - np.diag(np.diag(G))
-    t3 = (n + 2) * (n + 4) / n**2 * np.sum(G * (G @ G)) / (n * (n - 1) * (n - 2))
-    return t1, t2, np.clip(t3, t2**2 / t1, t2**1.5), max(2, 2 * (mean / error) ** 2)
-
-
-def ratio_member(family, name, ratio, runs, t1, t2, t3, freedom):
-    """(5.4), (5.5): a mean of squares over runs by the shifted gamma law."""
-    shape, scale = runs * t2**3 / (2 * t3**2), 2 * t3 / (runs * t2 * t1)
-    shift = 1 - shape * scale
-    x = max((ratio - shift) / scale, 0)
-    score = stats.norm.isf(min(special.gammainc(shape, x), special.gammaincc(shape, x)))
+    def end(score):
+        g, z = above if score > 0 else below, score / np.sqrt(n)
+        cube = 1 + g * (z - g / (6 * n))
+        if abs(g) > 1e-6 and cube <= 0:
+            return -np.inf * np.sign(score)
+        return mean - sd * (3 / g * (np.cbrt(cube) - 1) if abs(g) > 1e-6 else z)
 
     def interval(level):
-        tail = stats.norm.sf(min(stats.t.isf((1 - level) / 2, freedom), 37))
-        lower = shift + scale * special.gammaincinv(shape, tail)
-        upper = shift + scale * special.gammainccinv(shape, tail)
-        return ratio / upper, ratio / lower if lower > 0 else np.inf
+        score = stats.t.isf((1 - level) / 2, n - 1)
+        lower, upper = end(score), end(-score)
+        if not is_ratio:
+            return lower, upper
+        return max(0, lower), min(upper, 4 * n * mean / stats.chi2.ppf((1 - level) / 2, n))
 
-    return Member(family, name, ratio, 2 * stats.t.sf(min(score, 37), freedom), interval)
-
-
-def mean_member(family, name, values):
-    """A mean over runs that should be zero, by Student's t."""
-    n, mean, error = len(values), values.mean(), stats.sem(values)
-    return Member(family, name, mean, 2 * stats.t.sf(abs(mean / error), n - 1),
-                  lambda level: tuple(mean + error * stats.t.ppf([(1 - level) / 2, (1 + level) / 2],
-                                                                 n - 1)))
+    return p_value, interval
 
 
-def spread_member(x):
-    """(5.6): the standard deviation of the scales that runs have of their own, one-sided."""
-    n, t1 = x.shape
-    G, mean, without = products(x)
-    own = (n + 2) / (n - 1) * (np.diag(G) - t1) ** 2 / 2
-    others = (n + 2) / n * (n * mean - (n - 1) * without)
-    v = mean_member("between_runs", "runs", (own - others) / (mean + t1**2 / 2))
-    return v._replace(estimate=np.sqrt(max(v.estimate, 0)), p=v.p / 2 if v.estimate > 0 else 1.0,
-                      interval=lambda level: tuple(np.sqrt(np.maximum(v.interval(level), 0))))
+def skewness(values):
+    return stats.skew(values, bias=True) * np.sqrt(len(values) * (len(values) - 1)) / \
+        (len(values) - 2) if values.std() > 0 else 0.0
+
+
+def ratio_member(family, name, values, common=0.0):
+    """A ratio of squared errors to the expected ones, by one ratio of each run."""
+    n, g = len(values), skewness(values)
+    least = 2 * values.std(ddof=1) / values.mean()
+    below = max(g, common) * (1 + 1 / np.sqrt(n)) + np.sqrt(6 / n)
+    above = g - np.sqrt(6 / n)
+    p_value, interval = law(values, max(above, least), max(below, least), True)
+    return Member(family, name, values.mean(), p_value(1), interval)
+
+
+def zero_member(family, name, values, skewed=0.0):
+    """A mean over runs that should be zero; `skewed` is 1 if it may be skewed to either side."""
+    n = len(values)
+    g, error = skewed * skewness(values) * (1 + 1 / np.sqrt(n)), skewed * np.sqrt(6 / n)
+    p_value, interval = law(values, min(0, g - error), max(0, g + error))
+    return Member(family, name, values.mean(), p_value(0), interval)
+
+
+def scan_members(u, times):
+    """Exactly chi-square if errors are Gaussian; by the runs as well, of which the wider counts."""
+    runs, _, d = u.shape
+    values = (u**2).mean(axis=2)
+    cubes = [skewness(v) * v.std(ddof=1) ** 3 for v in values.T]
+    common = np.mean(cubes) / np.mean(values.var(axis=0, ddof=1)) ** 1.5
+    for s, of_scan in enumerate(values.T):
+        ratio, freedom = of_scan.mean(), runs * d
+        exact = 2 * min(stats.chi2.cdf(freedom * ratio, freedom),
+                        stats.chi2.sf(freedom * ratio, freedom))
+        by_runs = ratio_member("scan", "", of_scan, common)
+
+        def interval(level, ratio=ratio, by_runs=by_runs):
+            tails = np.array([(1 + level) / 2, (1 - level) / 2])
+            bounds = ratio * freedom / stats.chi2.ppf(tails, freedom)
+            own = by_runs.interval(level)
+            return min(bounds[0], own[0]), max(bounds[1], own[1])
+
+        yield Member("scan", f"at {times[s]:.1f} s", ratio, max(min(1, exact), by_runs.p), interval)
+
+
+def excess_member(family, excess, unit, written):
+    """A number that should be zero, of each group of eight runs; only too large a one counts."""
+    member = zero_member(family, family, np.array(excess))
+    unit = np.mean(unit)
+    return member._replace(estimate=written(member.estimate / unit),
+                           p=member.p / 2 if member.estimate > 0 else 1.0,
+                           interval=lambda level: tuple(written(np.array(member.interval(level))
+                                                                / unit)))
+
+
+def group_members(u):
+    """(5.3), (5.4): groups of eight successive runs of a block of 64."""
+    ends = np.arange(9) * u.shape[1] // 8
+    groups = [block[k:k + 8] for block in np.split(u, range(64, len(u), 64))
+              for k in range(0, len(block) - 7, 8)]
+    if len(groups) < 6:
+        return
+
+    def parts(x):  # {stretch, component}
+        return np.array([x[a:b].sum(axis=0) for a, b in zip(ends, ends[1:])])
+
+    def of_different(x, y):  # sum of products of parts with other stretch and other component
+        return (x.sum() * y.sum() - x.sum(axis=1) @ y.sum(axis=1) -
+                x.sum(axis=0) @ y.sum(axis=0) + (x * y).sum())
+
+    spread, unit, tails, square = [], [], [], []
+    for g in groups:
+        z, pairs = [parts(run**2) for run in g], list(combinations(range(8), 2))
+        common = [parts(g[i] * g[j]) for i, j in pairs]
+        spread.append(np.mean([of_different(z[i] - z[j], z[i] - z[j]) / 2 - 2 * of_different(c, c)
+                               for (i, j), c in zip(pairs, common)]))
+        unit.append(np.mean([of_different(z[i], z[j]) for i, j in pairs]))
+        fourth = (g**4).mean(axis=0)
+        square.append((((g**2).sum(axis=0) ** 2 - 8 * fourth) / 56).mean())
+        tails.append(fourth.mean() - 3 * square[-1])
+    if u.shape[1] >= 16:
+        yield excess_member("between_runs", spread, unit, lambda v: np.sqrt(np.maximum(v, 0)))
+    yield excess_member("tails", tails, square, lambda excess: excess)
 
 
 def members_of(u, z, times):
     """All tests of whitened errors u and standardised errors z {run, scan, component}."""
-    runs, scans, d = u.shape
-    kept = max(50, min(256, 8_000_000 // (scans * d)))  # runs whose products are made
+    scans, d, ratio = u.shape[1], u.shape[2], np.mean(u**2)
+    ends = np.arange(9) * scans // 8 if scans >= 16 else [0]
+    stretches = [(f" {times[a]:.3g} s to {times[b - 1]:.3g} s", slice(a, b))
+                 for a, b in zip(ends, ends[1:])]
+    pairs = [(NAMES[a] + " and " + NAMES[b], u[..., a] * u[..., b] / ratio)
+             for a, b in combinations(range(d), 2)]
+    components = [(NAMES[k], z[..., k]) for k in range(d)]
 
-    def aspect(family, name, x, block):
-        law = traces(x[:kept].reshape(-1, x[0].size), block)
-        return ratio_member(family, name, np.mean(x**2), runs, *law)
+    def over_drive(family, test, named):
+        yield from (test(family, name, x.mean(axis=1)) for name, x in named)
+        yield from (test(family + "_by_stretch", name + when, x[:, part].mean(axis=1))
+                    for name, x in named for when, part in stretches)
 
-    yield aspect("size", "all", u, d)
-    yield from (aspect("component", NAMES[k], z[..., k], 1) for k in range(d))
-    for s in range(8 if scans >= 16 else 0):
-        first, end = s * scans // 8, (s + 1) * scans // 8
-        name = f"{times[first]:.3g} s to {times[end - 1]:.3g} s"
-        yield aspect("stretch", name, u[:, first:end], d)
-    for s in range(scans):  # exactly chi-square
-        ratio = np.mean(u[:, s] ** 2)
-        yield ratio_member("scan", f"at {times[s]:.1f} s", ratio, runs * d, 1, 1, 1, np.inf)
-    yield from (mean_member("bias", NAMES[k], z[..., k].mean(axis=1)) for k in range(d))
-    for a, b in ((0, 1), (0, 2), (1, 2)):
-        name, values = NAMES[a] + " and " + NAMES[b], (u[..., a] * u[..., b]).mean(axis=1)
-        yield mean_member("correlation", name, values)
-    if runs >= 50:
-        yield spread_member(u[:kept].reshape(-1, scans * d))
+    def product(*arguments):
+        return zero_member(*arguments, skewed=1.0)
+
+    squares = [(name, x**2) for name, x in components]
+    yield ratio_member("size", "all", (u**2).mean(axis=(1, 2)))
+    by_component = list(over_drive("component", ratio_member, squares))
+    yield from by_component[:d]
+    for when, part in stretches:
+        yield ratio_member("stretch", when, (u[:, part] ** 2).mean(axis=(1, 2)))
+    yield from by_component[d:]
+    yield from scan_members(u, times)
+    yield from over_drive("bias", zero_member, components)
+    yield from over_drive("correlation", product, pairs)
+    yield from group_members(u)
+    largest = np.abs(u).max()
+    p = min(1, 2 * u.size * stats.norm.sf(largest / np.sqrt(max(1, ratio))))
+    yield Member("tails", "largest error", largest, p, lambda level: (np.nan, np.nan))
 
 
 def judge(members, level, within):
@@ -134,21 +203,24 @@ def judge(members, level, within):
     order = sorted(least, key=least.get)
     holm = np.maximum.accumulate([(len(order) - k) * least[f] for k, f in enumerate(order)])
     adjusted = dict(zip(order, np.minimum(1.0, holm)))
-    rows, is_within, signs = [], True, set()
+    rows, is_within, signs, is_rejected = [], True, set(), False
     for family, _, estimate, p, interval in members:
         n, limit = sizes[family], alpha * (least[family] / adjusted[family] or 1)
         shown = adjusted[family] <= alpha and p * n <= limit
         own, joint = interval(level), interval(1 - alpha / (len(sizes) * n))
         rows.append((own, joint, adjusted[family], shown))
-        most = np.sqrt(within - 1) if family == "bias" else within - (family not in RATIOS)
+        if family == "tails":  # a finding that is no part of the answer
+            continue
+        is_rejected |= adjusted[family] <= alpha
+        is_bias = family in ("bias", "bias_by_stretch")
+        most = np.sqrt(within - 1) if is_bias else within - (family not in RATIOS)
         least_allowed = 1 / most if family in RATIOS else -most
         is_disproved = joint[0] > most or joint[1] < least_allowed
         is_proved = own[0] >= least_allowed and own[1] <= most
-        is_within &= not is_disproved if family in ("scan", "between_runs") else is_proved
+        is_within &= not is_disproved and (family in NOT_PROVED or is_proved)
         if shown and family in RATIOS:
             signs.add("optimistic" if estimate > 1 else "conservative")
-    rejected = min(adjusted.values()) <= alpha
-    answer = (signs.pop() if len(signs) == 1 else "inconsistent") if rejected else "undecided"
+    answer = (signs.pop() if len(signs) == 1 else "inconsistent") if is_rejected else "undecided"
     return "consistent" if is_within else answer, rows
 
 

@@ -2,7 +2,7 @@
 #include "analysis/statistics/nees_bounds.hpp"
 
 #include "analysis/statistics/distributions.hpp"
-#include "analysis/statistics/squares_law.hpp"
+#include "analysis/statistics/run_mean.hpp"
 #include "engine/errors.hpp"
 
 #include <boost/math/special_functions/gamma.hpp>
@@ -36,7 +36,7 @@ Interval nees_bounds(std::uint64_t runs, std::uint64_t dimension, double level) 
 
 namespace {
 
-constexpr double kFamiliesOfAVerdict = 7.0;
+constexpr double kFamiliesOfAVerdict = 11.0;
 constexpr double kStretchesOfARun = 8.0;
 
 /// A sum of squares over runs: `independent` scans of `block` components in each run.
@@ -45,17 +45,15 @@ struct PlannedSum {
 
   double freedom() const { return runs * independent * block; }
 
-  /// The law that the verdict will estimate: of N n d independent squares the mean squared product
-  /// has a standard error of sqrt(8 / (N n d)) of itself, which makes N n d / 4 degrees of freedom.
-  SquaresLaw law() const {
-    const double terms = independent * block, error = std::sqrt(8.0 / freedom());
-    Traces traces = traces_of_constant_errors(terms, terms * terms / block);
-    if (runs >= static_cast<double>(kFewestRunsOfTraces)) {
-      traces.second = std::min(traces.second, terms * (1.0 + error));
-      traces.third = traces.second * traces.second / terms;
-      traces.freedom = std::max(2.0, 0.25 * freedom());
-    }
-    return {traces, runs};
+  /// The interval of the true ratio that the verdict will compute from runs of a ratio of 1 as they
+  /// vary on average.
+  Interval interval(double level) const {
+    Summary run;
+    run.n = static_cast<std::size_t>(runs);
+    run.mean = 1.0;
+    run.sd = std::sqrt(2.0 / (independent * block));
+    run.skewness = 2.0 * run.sd;  // of a chi-square variable
+    return RunMean::of_ratio(run).interval(level);
   }
 
   /// Probability that the mean is below `ratio` times its expectation.
@@ -67,7 +65,7 @@ struct PlannedSum {
 
   /// Probability that the interval of a filter with a ratio of 1 exceeds the margin.
   double not_shown(double within, double level) const {
-    const Interval unit = law().interval(1.0, level);
+    const Interval unit = interval(level);
     const double lowest = 1.0 / (within * unit.lower), highest = within / unit.upper;
     return lowest < highest ? below(lowest) + 1.0 - below(highest) : 1.0;
   }
@@ -115,7 +113,7 @@ double NeesPlan::found(double ratio, std::uint64_t runs) const {
   expect_ratio(ratio);
   const PlannedSum size{static_cast<double>(runs), static_cast<double>(test_.scans),
                         static_cast<double>(test_.dimension)};
-  const Interval unit = size.law().interval(1.0, 1.0 - (1.0 - test_.level) / kFamiliesOfAVerdict);
+  const Interval unit = size.interval(1.0 - (1.0 - test_.level) / kFamiliesOfAVerdict);
   return ratio > 1.0 ? 1.0 - size.below(1.0 / (unit.lower * ratio))
                      : size.below(1.0 / (unit.upper * ratio));
 }

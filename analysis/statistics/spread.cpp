@@ -39,6 +39,18 @@ double lopsidedness(std::vector<double> values) {
 
 }  // namespace
 
+Summary SummaryOf::result() const {
+  Summary summary;
+  const auto n = static_cast<double>(n_);
+  summary.n = n_;
+  if (n_ > 0) summary.mean = mean_;
+  if (n_ > 1) summary.sd = std::sqrt(squares_ / (n - 1.0));
+  if (n_ < 3) return summary;
+  const double cube = summary.sd * summary.sd * summary.sd;
+  summary.skewness = cube > 0.0 ? cubes_ / cube * (n / ((n - 1.0) * (n - 2.0))) : 0.0;
+  return summary;
+}
+
 double median_of(std::vector<double> values) {
   if (values.empty() || any_is_nan(values)) return Spread{}.median;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);

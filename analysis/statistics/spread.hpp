@@ -44,6 +44,9 @@ struct Summary {
   std::size_t n = 0;
   double mean = std::numeric_limits<double>::quiet_NaN();
   double sd = std::numeric_limits<double>::quiet_NaN();  ///< of one run, with n - 1
+  /// Third standardised moment of one run, corrected for the number of runs; 0 if all values are
+  /// equal, NaN below three values.
+  double skewness = std::numeric_limits<double>::quiet_NaN();
 
   /// Standard error of the mean.
   double standard_error() const { return sd / std::sqrt(static_cast<double>(n)); }
@@ -60,11 +63,12 @@ class SummaryOf {
  public:
   void add(double value) {
     ++n_;
-    const double before = value - mean_;
-    mean_ += before / static_cast<double>(n_);
+    const double before = value - mean_, n = static_cast<double>(n_), step = before / n;
+    cubes_ += step * (step * before * (n - 1.0) * (n - 2.0) - 3.0 * squares_);
+    mean_ += step;
     squares_ += before * (value - mean_);
   }
-  /// Adds the sums over values behind these (Chan, Golub and LeVeque 1979).
+  /// Adds the sums over values behind these (Chan, Golub and LeVeque 1979; Pebay 2008).
   void merge(const SummaryOf& next) {
     if (next.n_ == 0) return;
     if (n_ == 0) {
@@ -72,26 +76,23 @@ class SummaryOf {
       return;
     }
     const auto n = static_cast<double>(n_), more = static_cast<double>(next.n_);
-    const double difference = next.mean_ - mean_;
+    const double difference = next.mean_ - mean_, share = difference / (n + more);
+    cubes_ += next.cubes_ + share * (share * difference * n * more * (n - more) +
+                                     3.0 * (n * next.squares_ - more * squares_));
     n_ += next.n_;
     mean_ += difference * (more / (n + more));
     squares_ += next.squares_ + difference * difference * (n * more / (n + more));
   }
   static constexpr auto members() {
-    return std::tuple(&SummaryOf::n_, &SummaryOf::mean_, &SummaryOf::squares_);
+    return std::tuple(&SummaryOf::n_, &SummaryOf::mean_, &SummaryOf::squares_, &SummaryOf::cubes_);
   }
-  Summary result() const {
-    Summary summary;
-    summary.n = n_;
-    if (n_ > 0) summary.mean = mean_;
-    if (n_ > 1) summary.sd = std::sqrt(squares_ / static_cast<double>(n_ - 1));
-    return summary;
-  }
+  Summary result() const;
 
  private:
   std::size_t n_ = 0;
   double mean_ = 0.0;
-  double squares_ = 0.0;
+  double squares_ = 0.0;  ///< of deviations from the mean
+  double cubes_ = 0.0;    ///< likewise
 };
 
 /// The summary of `values`, added in their order.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The verdict in words: short for a table, and as a sentence with time and component.
 #include "analysis/output/number_text.hpp"
-#include "analysis/statistics/squares_law.hpp"
 #include "analysis/verdict/verdict.hpp"
 
 #include <algorithm>
@@ -10,13 +9,21 @@
 namespace montecarta::analysis {
 namespace {
 
+constexpr double kMostToPrint = 1e20;  // beyond, a factor has no meaning but that it is large
+
 enum class Direction { above, below };
+constexpr std::array kDirections = {Direction::above, Direction::below};
 
 /// A member with its family.
 struct Shown {
   const FamilyTest* test;
   const Member* member;
 };
+
+bool is_rejected(const Verdict& verdict, Family family) {
+  const FamilyTest* test = verdict.find(family);
+  return test != nullptr && test->is_rejected;
+}
 
 /// Members of a family of ratios that are shown to be off in one direction.
 std::vector<const Member*> shown_in(const FamilyTest* test, Direction direction) {
@@ -31,14 +38,14 @@ std::vector<const Member*> shown_in(const FamilyTest* test, Direction direction)
   return all;
 }
 
-/// The leading member for a direction: the size if it is shown, else the component or stretch of
-/// the least p-value, else the scan.
+/// The leading member for a direction: the size if it is shown, else the member of the least
+/// p-value of other ratios, of single scans only if nothing else is shown.
 std::optional<Shown> leading(const Verdict& verdict, Direction direction) {
   std::optional<Shown> best;
   for (const FamilyTest& test : verdict.families) {
-    const bool is_settled =
+    const bool is_decided =
         best && (best->test->family == Family::size || test.family == Family::scan);
-    if (!is_ratio(test.family) || is_settled) continue;
+    if (!is_ratio(test.family) || is_decided) continue;
     for (const Member* member : shown_in(&test, direction)) {
       if (!best || member->p < best->member->p) best = Shown{&test, member};
     }
@@ -47,9 +54,9 @@ std::optional<Shown> leading(const Verdict& verdict, Direction direction) {
 }
 
 std::string from_to(double lower, double upper) {
-  if (std::isinf(lower)) return "infinitely many";
+  if (std::isinf(lower) || lower > kMostToPrint) return "more than " + compact(kMostToPrint);
   const std::string from = compact(lower), to = compact(upper);
-  if (std::isinf(upper)) return "at least " + from;
+  if (std::isinf(upper) || upper > kMostToPrint) return "at least " + from;
   return from == to ? from : from + " to " + to;
 }
 
@@ -67,113 +74,250 @@ std::string in_component(const std::string& name) {
   return name == "forward" || name == "left" ? name : "in " + name;
 }
 
-/// " in heading", " from 12 s to 24 s", " at 3 s"; empty for the size.
-std::string place_of(const Shown& shown) {
-  switch (shown.test->family) {
-    case Family::component:
-      return " " + in_component(shown.member->name);
-    case Family::stretch:
-      return " from " + name_of(*shown.member);
-    case Family::scan:
-      return " " + name_of(*shown.member);
-    default:
-      return "";
-  }
+/// " in heading", " from 12 s to 24 s", " in heading from 12 s to 24 s", " at 3 s"; empty for the
+/// size.
+std::string place_of(const Member& member, bool is_of_component) {
+  const std::string name = is_of_component ? " " + in_component(member.name) : "";
+  if (std::isnan(member.from)) return name;
+  Member time = member;
+  time.name.clear();
+  return name + (member.from == member.to ? " " : " from ") + name_of(time);
 }
 
-/// "from 138 s on"; empty where no stretch is shown.
+std::string place_of(const Shown& shown) {
+  const Family family = shown.test->family;
+  if (family == Family::size) return "";
+  const bool is_of_component =
+      family == Family::component || family == Family::component_by_stretch;
+  return place_of(*shown.member, is_of_component);
+}
+
+/// "from 138 s on"; empty where no stretch is shown, or where stretches do not differ.
 std::string when(const Verdict& verdict, Direction direction) {
   const FamilyTest* stretches = verdict.find(Family::stretch);
   const auto shown = shown_in(stretches, direction);
   if (shown.empty()) return "";
-  const auto gap = static_cast<std::size_t>(shown.back() - shown.front()) + 1;
-  if (gap != shown.size()) return "at some times more than at others";
   const bool from_start = shown.front() == &stretches->members.front();
   const bool to_end = shown.back() == &stretches->members.back();
-  if (to_end && from_start) return "in every eighth of the drive";
+  const auto gap = static_cast<std::size_t>(shown.back() - shown.front()) + 1;
+  if (gap == shown.size() && to_end && from_start) return "in every eighth of the drive";
+  if (verdict.beside.p_of_equal_stretches > 1.0 - verdict.level) return "";
+  if (gap != shown.size()) return "at some times more than at others";
   if (to_end) return "from " + readable(shown.front()->from) + " s on";
   if (from_start) return "until " + readable(shown.back()->to) + " s";
   return "from " + readable(shown.front()->from) + " s to " + readable(shown.back()->to) + " s";
 }
 
-/// ", mainly in heading"; empty where components do not differ.
+double distance_of(const Member& ratio) { return std::abs(std::log(ratio.estimate)); }
+
+bool are_apart(const Member& a, const Member& b) {
+  return a.interval.upper < b.interval.lower || a.interval.lower > b.interval.upper;
+}
+
+/// The components that are off more than half as far, in logarithms, as the one that is off most.
+std::vector<const Member*> farthest_of(const std::vector<const Member*>& shown) {
+  double most = 0.0;
+  for (const Member* member : shown) most = std::max(most, distance_of(*member));
+  std::vector<const Member*> all;
+  for (const Member* member : shown) {
+    if (distance_of(*member) >= 0.5 * most) all.push_back(member);
+  }
+  return all;
+}
+
+/// "z, rx and ry"
+std::string listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    text += (k == 0 ? "" : k + 1 == names.size() ? " and " : ", ") + names[k];
+  }
+  return text;
+}
+
+/// ", mainly in heading (1.9 to 2.4 times)"; empty where components do not differ.
 std::string where(const Verdict& verdict, Direction direction) {
   const FamilyTest* components = verdict.find(Family::component);
-  const auto shown = shown_in(components, direction);
-  if (shown.empty()) return "";
-  const auto distance = [](double ratio) { return std::abs(std::log(ratio)); };
-  const auto farthest = *std::ranges::max_element(
-      shown, {}, [&](const Member* member) { return distance(member->estimate); });
-  const bool is_alone = std::ranges::all_of(components->members, [&](const Member& other) {
-    const bool is_apart = other.interval.upper < farthest->interval.lower ||
-                          other.interval.lower > farthest->interval.upper;
-    return &other == farthest || is_apart;
-  });
-  return is_alone ? ", mainly " + in_component(farthest->name) : "";
+  const auto farthest = farthest_of(shown_in(components, direction));
+  if (farthest.empty() || farthest.size() == components->members.size()) return "";
+  for (const Member& other : components->members) {
+    const bool is_one = std::ranges::count(farthest, &other) > 0;
+    const auto is_apart = [&](const Member* one) { return are_apart(*one, other); };
+    if (!is_one && !std::ranges::all_of(farthest, is_apart)) return "";
+  }
+  std::vector<std::string> names;
+  for (const Member* one : farthest) names.push_back(one->name);
+  if (names.size() > 1) return ", mainly in " + listed(names);
+  return ", mainly " + in_component(names.front()) + " (" +
+         factor_text({components, farthest.front()}, direction) + " times)";
+}
+
+/// "-0.54 to -0.40", "0.40 or more"
+std::string signed_text(const Interval& found) {
+  const auto text = [](double value) { return readable(value, 2); };
+  if (std::isinf(found.lower)) return text(found.upper) + " or less";
+  if (std::isinf(found.upper)) return text(found.lower) + " or more";
+  return text(found.lower) + " to " + text(found.upper);
+}
+
+/// The shown member of the least p-value with that sign of its estimate; nullptr if there is none.
+const Member* strongest_shown(const FamilyTest& test, bool is_negative) {
+  const Member* best = nullptr;
+  for (const Member& member : test.members) {
+    if (!test.is_shown(member) || (member.estimate < 0.0) != is_negative) continue;
+    if (best == nullptr || member.p < best->p) best = &member;
+  }
+  return best;
+}
+
+std::string bias_of(const Member& member) {
+  return "a bias" + place_of(member, true) + " of " + signed_text(member.simultaneous) +
+         " standard deviations";
+}
+
+std::string correlation_of(const Member& member) {
+  return "an unreported correlation of " + signed_text(member.simultaneous) + " between " +
+         member.name + place_of(member, false);
+}
+
+/// Biases or correlations: over the whole drive if those are shown, else in stretches, of each sign
+/// the strongest one.
+template <class Words>
+void add_zero_means(const Verdict& verdict, Family whole, Family by_stretch, Words words,
+                    std::vector<std::string>& all) {
+  const FamilyTest* test = verdict.find(is_rejected(verdict, whole) ? whole : by_stretch);
+  if (test == nullptr) return;
+  for (const bool is_negative : {false, true}) {
+    const Member* member = strongest_shown(*test, is_negative);
+    if (member != nullptr) all.push_back(words(*member));
+  }
+}
+
+std::string spread_words(const Verdict& verdict) {
+  const FamilyTest* test = verdict.find(Family::between_runs);
+  if (test == nullptr || !test->is_rejected) return "";
+  const Interval& found = test->members.front().interval;
+  return "runs have scales of their own (standard deviation " + signed_text(found) + ")";
+}
+
+/// "its errors have heavier tails than a Gaussian (the largest is 12.3 deviations, of heading of
+/// run 17 at 31.0 s)". Runs with scales of their own have such tails too, and are named by their
+/// spread.
+std::string tail_words(const Verdict& verdict) {
+  const FamilyTest* test = verdict.find(Family::tails);
+  if (test == nullptr || !test->is_rejected || !spread_words(verdict).empty()) return "";
+  std::string words = "its errors have heavier tails than a Gaussian";
+  const Member& largest = test->members.back();
+  if (!test->is_shown(largest)) return words;
+  return words + " (the largest is " + compact(largest.estimate) + " deviations, of " +
+         name_of(largest) + ")";
+}
+
+/// Biases and correlations, in the order of their lengths.
+std::vector<std::string> means_words(const Verdict& verdict) {
+  std::vector<std::string> all;
+  add_zero_means(verdict, Family::bias, Family::bias_by_stretch, bias_of, all);
+  add_zero_means(verdict, Family::correlation, Family::correlation_by_stretch, correlation_of, all);
+  std::ranges::stable_sort(all, {}, &std::string::size);
+  return all;
+}
+
+std::string joined(const std::vector<std::string>& phrases) {
+  std::string text;
+  for (const std::string& phrase : phrases) {
+    if (!phrase.empty()) text += (text.empty() ? "" : "; ") + phrase;
+  }
+  return text;
+}
+
+/// "bets on its runs show that squared errors are more than 1.1 times what it claims"; empty if
+/// bets show nothing on this side.
+std::string bet_words(const Verdict& verdict, Side side) {
+  if (verdict.refused_by_bets != side) return "";
+  return "bets on its runs show that squared errors are more than " + exact_text(verdict.within) +
+         (side == Side::above ? " times what it claims" : " times smaller than it claims");
+}
+
+/// "on average its squared errors are 1.67 times what it claims (95 %: 1.28 to 2.25), shown from
+/// 138 s on, mainly forward (2.1 to 3.4 times)"; empty if nothing is shown in this direction.
+std::string ratio_sentence(const Verdict& verdict, Direction direction) {
+  const auto shown = leading(verdict, direction);
+  const bool is_above = direction == Direction::above;
+  if (!shown) return bet_words(verdict, is_above ? Side::above : Side::below);
+  const std::string factor = factor_text(*shown, direction);
+  const std::string than = is_above ? " times what it claims" : " times smaller than it claims";
+  const std::string place = place_of(*shown);
+  if (!place.empty()) return "its squared errors" + place + " are " + factor + than;
+  const double ratio = shown->member->estimate;
+  if (ratio == 0.0) return "its errors are exactly 0 in all runs";
+  const std::string time = when(verdict, direction);
+  return "on average its squared errors are " + compact(is_above ? ratio : 1.0 / ratio) + than +
+         " (" + level_text(verdict.level) + ": " + factor + ")" +
+         (time.empty() ? "" : ", shown " + time) + where(verdict, direction);
+}
+
+/// Everything that is shown, the spread between runs first where directions differ.
+std::string shown_sentence(const Verdict& verdict) {
+  const std::string spread = spread_words(verdict),
+                    above = ratio_sentence(verdict, Direction::above),
+                    below = ratio_sentence(verdict, Direction::below);
+  const bool is_one_direction = above.empty() != below.empty();
+  std::vector<std::string> phrases = {is_one_direction ? above + below : spread,
+                                      is_one_direction ? spread : above,
+                                      is_one_direction ? "" : below};
+  std::ranges::move(means_words(verdict), std::back_inserter(phrases));
+  phrases.push_back(tail_words(verdict));
+  return joined(phrases);
 }
 
 /// "NEES 1.28 to 2.25 times too large in heading"
 std::string ratio_words(const Verdict& verdict, Direction direction) {
   const auto shown = leading(verdict, direction);
   if (!shown) return "";
+  const std::string time =
+      shown->test->family == Family::size ? when(verdict, direction) : std::string();
   return "NEES " + factor_text(*shown, direction) +
          (direction == Direction::above ? " times too large" : " times too small") +
-         place_of(*shown);
+         place_of(*shown) + (time.empty() ? "" : ", " + time);
 }
 
-/// The shown deviation with the least p-value among the families that are no ratios.
-std::string other_words(const Verdict& verdict) {
-  std::optional<Shown> best;
-  for (const FamilyTest& test : verdict.families) {
-    if (is_ratio(test.family)) continue;
-    for (const Member& member : test.members) {
-      if (test.is_shown(member) && (!best || member.p < best->member->p)) best = {&test, &member};
-    }
+/// "; also bias, between runs": families that are shown besides.
+std::string also_words(const Verdict& verdict) {
+  std::string names;
+  for (const Family family :
+       {Family::bias, Family::bias_by_stretch, Family::correlation, Family::correlation_by_stretch,
+        Family::between_runs, Family::tails}) {
+    if (is_rejected(verdict, family)) names += (names.empty() ? "" : ", ") + name_of(family);
   }
-  if (!best) return "";
-  const Interval& found = best->member->interval;
-  const double low = std::min(std::abs(found.lower), std::abs(found.upper));
-  const double high = std::max(std::abs(found.lower), std::abs(found.upper));
-  const std::string range = from_to(low, high);
-  switch (best->test->family) {
-    case Family::bias:
-      return "a bias " + in_component(best->member->name) + " of " + range + " standard deviations";
-    case Family::correlation:
-      return "a correlation of " + range + " between " + best->member->name +
-             " that is not reported";
-    default:
-      return "scales of their own in single runs (standard deviation " + range + ")";
-  }
+  return names;
 }
 
-/// Times at which the size is off, if the size alone leads the verdict.
-std::string time_words(const Verdict& verdict, Direction direction) {
-  const auto shown = leading(verdict, direction);
-  const bool is_size = shown && shown->test->family == Family::size;
-  const std::string time = is_size ? when(verdict, direction) : "";
-  return time.empty() ? "" : ", " + time;
-}
-
-std::string inconsistent_words(const Verdict& verdict) {
+std::string shown_words(const Verdict& verdict) {
   const std::string above = ratio_words(verdict, Direction::above);
   const std::string below = ratio_words(verdict, Direction::below);
-  if (above.empty() || below.empty()) return other_words(verdict);
-  return above + ", " + below.substr(below.find(' ') + 1);
+  std::string ratios = above.empty() ? below : above;
+  if (!above.empty() && !below.empty()) ratios += ", " + below.substr(below.find(' ') + 1);
+  const std::string also = also_words(verdict);
+  if (ratios.empty()) return shown_sentence(verdict);
+  if (also.empty()) return ratios;
+  return ratios + "; also " + also;
 }
 
 /// ", slightly optimistic (1.02 to 1.06)", ", though with a bias in heading of ..." where a
 /// deviation within the margin is shown.
 std::string slight_words(const Verdict& verdict) {
   std::string words;
-  for (const Direction direction : {Direction::above, Direction::below}) {
+  for (const Direction direction : kDirections) {
     const auto shown = leading(verdict, direction);
     if (!shown || shown->test->family == Family::scan) continue;
     const bool is_above = direction == Direction::above;
     words += std::string(", slightly ") + (is_above ? "optimistic" : "conservative") +
              place_of(*shown) + " (" + factor_text(*shown, direction, true) + ")";
   }
-  const std::string others = other_words(verdict);
-  return others.empty() ? words : words + ", though with " + others;
+  std::vector<std::string> phrases = means_words(verdict);
+  phrases.insert(phrases.begin(), spread_words(verdict));
+  const std::string others = joined(phrases);
+  return others.empty() ? words
+                        : words + ", though " + (others.starts_with('a') ? "with " : "") + others;
 }
 
 /// "3 of 300 runs failed, 20 of 9600 samples are unusable"; empty if there are none.
@@ -195,112 +339,130 @@ std::string within_words(const Verdict& verdict) {
   return "consistent within " + exact_text(verdict.within);
 }
 
-std::string undecided_words(const Verdict& verdict) {
-  if (complete_runs(verdict) < kFewestRunsOfTraces) {
-    return ": take at least " + std::to_string(kFewestRunsOfTraces) + " runs";
+/// "about 130 more runs would show"; empty if it is not known.
+std::string more_runs_words(const Verdict& verdict) {
+  if (complete_runs(verdict) < kFewestRunsOfAPlan) {
+    return "take at least " + std::to_string(kFewestRunsOfAPlan) + " runs";
   }
-  if (!verdict.more_runs) return ": many more runs decide";
-  return ": about " + std::to_string(*verdict.more_runs) + " more runs decide";
+  if (!verdict.more_runs) return "many more runs decide";
+  return "about " + std::to_string(*verdict.more_runs) + " more runs decide";
 }
 
-/// Direction of an optimistic or a conservative filter.
-Direction direction_of(Answer answer) {
-  return answer == Answer::optimistic ? Direction::above : Direction::below;
+bool is_slight(const Verdict& verdict) {
+  return !verdict.is_refused && verdict.beside.exact.empty();
 }
 
 std::string answer_words(const Verdict& verdict) {
-  const Direction direction = direction_of(verdict.answer);
-  const std::string name = name_of(verdict.answer);
-  switch (verdict.answer) {
+  const std::string name = name_of(verdict.of_tests);
+  switch (verdict.of_tests) {
     case Answer::untested:
       return "not tested";
     case Answer::consistent:
       return within_words(verdict) + slight_words(verdict);
-    case Answer::inconsistent:
-      return name + ": " + inconsistent_words(verdict);
     case Answer::undecided:
-      return name + undecided_words(verdict);
+      return name + ": " + more_runs_words(verdict);
     default:
-      return name + ": " + ratio_words(verdict, direction) + time_words(verdict, direction);
+      return (is_slight(verdict) ? "slightly " : "") + name + ": " + shown_words(verdict);
   }
 }
 
-/// "on average its squared errors are 1.67 times what it claims (95 %: 1.28 to 2.25), shown from
-/// 138 s on, mainly forward"
-std::string squared_errors(const Verdict& verdict) {
-  const Direction direction = direction_of(verdict.answer);
-  const auto shown = leading(verdict, direction);
-  if (!shown) return "";
-  const bool is_above = direction == Direction::above;
-  const std::string factor = factor_text(*shown, direction);
-  const std::string than = is_above ? " times what it claims" : " times smaller than it claims";
-  const std::string place = place_of(*shown);
-  if (!place.empty()) return "its squared errors" + place + " are " + factor + than;
-  const double ratio = shown->member->estimate;
-  const std::string time = when(verdict, direction);
-  return "on average its squared errors are " + compact(is_above ? ratio : 1.0 / ratio) + than +
-         " (" + level_text(verdict.level) + ": " + factor + ")" +
-         (time.empty() ? "" : ", shown " + time) + where(verdict, direction);
+/// "in every component and in every eighth of the drive", as far as these were judged.
+std::string judged_parts(const Verdict& verdict) {
+  const FamilyTest* bias = verdict.find(Family::bias);
+  if (bias == nullptr) return " on average; its components were not judged";
+  const bool is_one = bias->members.size() == 1;
+  std::string parts = is_one ? "" : " in every component";
+  if (verdict.find(Family::stretch) != nullptr) {
+    parts += (is_one ? "" : " and") + std::string(" in every eighth of the drive");
+  }
+  const bool has_correlations = is_one || verdict.find(Family::correlation) != nullptr;
+  return parts + (has_correlations ? "" : "; correlations were not judged");
 }
 
-std::string consistent_sentence(const std::string& label, const Verdict& verdict) {
-  const std::string parts = verdict.find(Family::stretch) != nullptr
-                                ? " in every component and in every eighth of the drive"
-                                : " in every component";
-  return label + " is " + within_words(verdict) + parts + slight_words(verdict) +
-         "; events rarer than 1 in " + std::to_string(complete_runs(verdict) / 3) +
-         " runs are not excluded";
+std::string consistent_words(const Verdict& verdict) {
+  const std::string tails = tail_words(verdict);
+  return within_words(verdict) + judged_parts(verdict) + slight_words(verdict) + "; " +
+         (tails.empty() ? "events rarer than 1 in " + std::to_string(complete_runs(verdict) / 3) +
+                              " runs are not excluded"
+                        : tails);
 }
 
-std::string undecided_sentence(const std::string& label, const Verdict& verdict) {
+std::string undecided_words(const Verdict& verdict) {
   const std::uint64_t runs = complete_runs(verdict);
-  std::string words = label + " is undecided: " + std::to_string(runs) +
+  std::string words = "undecided: " + std::to_string(runs) +
                       (runs == 1 ? " run does" : " runs do") + " not show whether it is " +
                       within_words(verdict);
-  if (runs < kFewestRunsOfTraces) {
-    return words + "; fewer than " + std::to_string(kFewestRunsOfTraces) +
-           " runs are judged as if errors never changed within a run";
+  if (runs < kFewestJudgedRuns) {
+    return words + "; of fewer than " + std::to_string(kFewestJudgedRuns) +
+           " runs single scans alone are judged";
   }
-  if (!verdict.more_runs) return words;
-  return words + "; about " + std::to_string(*verdict.more_runs) + " more would";
+  return joined({words, more_runs_words(verdict), tail_words(verdict)});
 }
 
-std::string sentence_of(const std::string& label, const Verdict& verdict) {
-  switch (verdict.answer) {
+/// What the tests say.
+std::string tested_words(const Verdict& verdict) {
+  const std::string slightly = is_slight(verdict) ? "slightly " : "";
+  const std::string margin = exact_text(verdict.within);
+  const std::string open =
+      is_slight(verdict) ? "; " + more_runs_words(verdict) + " whether that is within " + margin
+                         : "";
+  switch (verdict.of_tests) {
     case Answer::consistent:
-      return consistent_sentence(label, verdict);
+      return consistent_words(verdict);
     case Answer::optimistic:
-      return label + " is optimistic (overconfident): " + squared_errors(verdict);
+      return slightly + "optimistic (overconfident): " + shown_sentence(verdict) + open;
     case Answer::conservative:
-      return label + " is conservative: " + squared_errors(verdict);
+      return slightly + "conservative: " + shown_sentence(verdict) + open;
     case Answer::inconsistent:
-      return label + " is inconsistent: " + inconsistent_words(verdict);
+      return slightly + "inconsistent: " + shown_sentence(verdict) + open;
     case Answer::undecided:
-      return undecided_sentence(label, verdict);
+      return undecided_words(verdict);
     case Answer::untested:
       break;
   }
-  const std::uint64_t runs = complete_runs(verdict);
-  if (runs > 0 && runs < kFewestJudgedRuns) {
-    return label + " is not tested: fewer than " + std::to_string(kFewestJudgedRuns) +
-           " runs are complete";
+  return "not tested: no complete run has a covariance that can be judged";
+}
+
+/// "z and rx have errors of up to 3e-08 and 1e-09 although their reported deviation is 0"
+std::string exact_words(const Verdict& verdict) {
+  const auto& all = verdict.beside.exact;
+  std::vector<std::string> names, errors;
+  for (const BesideTests::Exact& exact : all) {
+    names.push_back(exact.component);
+    errors.push_back(compact(exact.error));
   }
-  return label + " is not tested: no complete run has a covariance that can be judged";
+  return "it claims a deviation of 0 for " + listed(names) + ", which " +
+         (all.size() == 1 ? "has" : "have") + " errors of up to " + listed(errors);
+}
+
+std::string repeat_words(const Verdict& verdict) {
+  const auto& [run, earlier] = verdict.beside.first_repeat;
+  return "not tested: " + std::to_string(verdict.beside.repeated_runs) + " of " +
+         std::to_string(complete_runs(verdict)) +
+         " runs have the errors of an earlier run, number by number (run " + std::to_string(run) +
+         " those of run " + std::to_string(earlier) + "), and runs must be independent";
+}
+
+std::string all_words(const Verdict& verdict, const std::string& by_tests) {
+  if (verdict.beside.repeated_runs > 0) return repeat_words(verdict);
+  if (verdict.beside.exact.empty()) return by_tests;
+  return "inconsistent: " + exact_words(verdict) + "; the other components are " + by_tests;
 }
 
 }  // namespace
 
 std::string in_words(const Verdict& verdict) {
   const std::string exceptions = exceptions_of(verdict);
-  if (exceptions.empty()) return answer_words(verdict);
+  const std::string words = all_words(verdict, answer_words(verdict));
+  if (exceptions.empty()) return words;
   const bool is_good = verdict.answer == Answer::consistent;
-  return answer_words(verdict) + (is_good ? " in what can be judged" : "") + " (" + exceptions +
-         ")";
+  return words + (is_good ? " in what can be judged" : "") + " (" + exceptions + ")";
 }
 
 std::string sentence(const std::string& label, const Verdict& verdict) {
   const std::string exceptions = exceptions_of(verdict);
-  return sentence_of(label, verdict) + (exceptions.empty() ? "." : " (" + exceptions + ").");
+  return label + " is " + all_words(verdict, tested_words(verdict)) +
+         (exceptions.empty() ? "." : " (" + exceptions + ").");
 }
 
 }  // namespace montecarta::analysis

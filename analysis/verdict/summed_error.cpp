@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/verdict/summed_error.hpp"
 
+#include "analysis/statistics/distributions.hpp"
+#include "engine/errors.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -10,94 +13,129 @@
 namespace montecarta::analysis {
 namespace {
 
-/// Laws of the ratio of single scans by their degrees of freedom, which are nearly always the same.
-class ScanLaws {
+/// The law of a mean of so many squares of independent standard normal variables, for many means:
+/// their number is nearly always the same.
+class SquaresLaw {
  public:
-  double p_value(double freedom, double ratio) { return law(freedom).p_value(ratio); }
-  Interval interval(double freedom, double ratio, double level) {
-    const auto [found, is_new] = intervals_.try_emplace({freedom, level});
-    if (is_new) found->second = law(freedom).interval(1.0, level);
-    return {ratio * found->second.lower, ratio * found->second.upper};
+  /// Two-sided p-value of a mean.
+  static double p_value(double freedom, double mean) {
+    const double sum = freedom * mean;
+    return std::min(1.0,
+                    2.0 * std::min(chi_squared_cdf(sum, freedom), chi_squared_tail(sum, freedom)));
+  }
+  /// Interval that holds the true ratio of a mean.
+  Interval interval(double freedom, double mean, double level) {
+    const auto [found, is_new] = bounds_.try_emplace({freedom, level});
+    if (is_new) {
+      const double tail = 0.5 * (1.0 - level);
+      found->second = {chi_squared_quantile(tail, freedom) / freedom,
+                       chi_squared_beyond(tail, freedom) / freedom};
+    }
+    return {mean / found->second.upper, mean / found->second.lower};
   }
 
  private:
-  /// The exact law: so many squares of independent standard normal variables.
-  const SquaresLaw& law(double freedom) {
-    return laws_.try_emplace(freedom, Traces{1.0, 1.0, 1.0}, freedom).first->second;
-  }
-
-  std::map<double, SquaresLaw> laws_;
-  std::map<std::pair<double, double>, Interval> intervals_;
+  std::map<std::pair<double, double>, Interval> bounds_;
 };
+
+MemberTest exact_test(Family family, Member member, double freedom,
+                      const std::shared_ptr<SquaresLaw>& law) {
+  const double ratio = member.estimate;
+  member.p = SquaresLaw::p_value(freedom, ratio);
+  return {family, std::move(member),
+          [law, freedom, ratio](double level) { return law->interval(freedom, ratio, level); }};
+}
+
+/// A scan is off if neither the exact law of Gaussian errors nor the runs explain it: the runs know
+/// no tails of errors, and the exact law knows Gaussian ones only. Fewer than three runs say
+/// nothing.
+MemberTest with_runs(MemberTest exact, const RunMean& runs, std::size_t n) {
+  if (n < kFewestJudgedRuns) return exact;
+  exact.member.p = std::max(exact.member.p, runs.p_value(1.0));
+  exact.interval = [law = std::move(exact.interval), runs](double level) {
+    const Interval gaussian = law(level), by_runs = runs.interval(level);
+    return Interval{std::min(gaussian.lower, by_runs.lower),
+                    std::max(gaussian.upper, by_runs.upper)};
+  };
+  return exact;
+}
 
 }  // namespace
 
-void SummedError::add(std::size_t scan, double nees, double dimension) {
-  if (std::isnan(nees)) return;
-  scans_[scan].nees += nees;
-  scans_[scan].dimensions += dimension;
-  scans_[scan].runs += 1.0;
+MemberTest ratio_test(Family family, Member member, const RunMean& ratio) {
+  member.estimate = ratio.mean();
+  member.p = ratio.p_value(1.0);
+  return {family, std::move(member), [ratio](double level) { return ratio.interval(level); }};
+}
+
+void SummedError::add(std::span<const double> nees, double dimension) {
+  add(nees, std::vector<double>(nees.size(), dimension));
+}
+
+void SummedError::add(std::span<const double> nees, std::span<const double> dimensions) {
+  expect(nees.size() <= scans_.size() && dimensions.size() == nees.size(), "a NEES for each scan");
+  double sum = 0.0, expected = 0.0;
+  for (std::size_t s = 0; s < nees.size(); ++s) {
+    if (std::isnan(nees[s])) continue;
+    scans_[s].nees += nees[s];
+    scans_[s].dimensions += dimensions[s];
+    scans_[s].runs.add(nees[s] / dimensions[s]);
+    sum += nees[s];
+    expected += dimensions[s];
+  }
+  if (expected > 0.0) ratios_.add(sum / expected);
+}
+
+double SummedError::common_skewness() const {
+  double cubes = 0.0, squares = 0.0, n = 0.0;
+  for (const Scan& scan : scans_) {
+    const Summary runs = scan.runs.result();
+    if (!(runs.sd > 0.0) || std::isnan(runs.skewness)) continue;
+    cubes += runs.skewness * runs.sd * runs.sd * runs.sd;
+    squares += runs.sd * runs.sd;
+    n += 1.0;
+  }
+  return n > 0.0 ? cubes / n / std::pow(squares / n, 1.5) : 0.0;
 }
 
 std::vector<MemberTest> SummedError::scan_tests(std::span<const double> times) const {
   std::vector<MemberTest> all;
-  const auto laws = std::make_shared<ScanLaws>();
+  const auto law = std::make_shared<SquaresLaw>();
+  const double skewness = common_skewness();
   for (std::size_t s = 0; s < scans_.size(); ++s) {
-    const double freedom = scans_[s].dimensions;
-    if (!(freedom > 0.0)) continue;
-    const double ratio = scans_[s].ratio();
-    Member member{.from = times[s], .to = times[s], .estimate = ratio};
-    member.p = laws->p_value(freedom, ratio);
-    all.push_back({Family::scan, std::move(member), [laws, freedom, ratio](double level) {
-                     return laws->interval(freedom, ratio, level);
-                   }});
+    const Scan& scan = scans_[s];
+    if (!(scan.dimensions > 0.0)) continue;
+    const Summary runs = scan.runs.result();
+    Member member{.from = times[s], .to = times[s], .estimate = scan.ratio()};
+    all.push_back(with_runs(exact_test(Family::scan, std::move(member), scan.dimensions, law),
+                            RunMean::of_ratio(runs, skewness), runs.n));
   }
   return all;
 }
 
-double SummedError::most_runs() const {
-  double most = 0.0;
-  for (const Scan& scan : scans_) most = std::max(most, scan.runs);
-  return most;
-}
-
 MemberTest SummedError::size_test() const {
-  const Scan sum = sum_of(0, scans_.size());
-  const double runs = most_runs();
-  double deviation = 0.0;  // of a run's sum, over the square root of 2
-  for (const Scan& scan : scans_) {
-    if (scan.runs > 0.0) deviation += std::sqrt(scan.dimensions / scan.runs);
-  }
-  const SquaresLaw law(traces_of_constant_errors(sum.dimensions / runs, deviation * deviation),
-                       runs);
-  return ratio_test(Family::size, {.name = "NEES", .estimate = sum.ratio()}, law);
+  return ratio_test(Family::size, {.name = "all"}, RunMean::of_ratio(ratios()));
 }
 
 std::vector<FamilyTest> SummedError::families(double level, std::span<const double> times) const {
-  if (!(most_runs() > 0.0)) return {};
   std::vector<MemberTest> all = scan_tests(times);
-  all.push_back(size_test());
+  if (ratios().n >= kFewestJudgedRuns) all.push_back(size_test());
   return judge_tests(std::move(all), level);
-}
-
-SummedError::Scan SummedError::sum_of(std::size_t first, std::size_t end) const {
-  Scan sum;
-  for (std::size_t s = first; s < end; ++s) {
-    sum.nees += scans_[s].nees;
-    sum.dimensions += scans_[s].dimensions;
-  }
-  return sum;
 }
 
 std::vector<FamilyTest> SummedError::white_families(double level,
                                                     std::span<const double> times) const {
   std::vector<MemberTest> all = scan_tests(times);
+  const auto law = std::make_shared<SquaresLaw>();
   const auto add_sum = [&](Family family, Member member, std::size_t first, std::size_t end) {
-    const Scan sum = sum_of(first, end);
-    if (!(sum.dimensions > 0.0)) return;
-    member.estimate = sum.ratio();
-    const SquaresLaw law({1.0, 1.0, 1.0}, sum.dimensions);
-    all.push_back(ratio_test(family, std::move(member), law));
+    double nees = 0.0, dimensions = 0.0;
+    for (std::size_t s = first; s < end; ++s) {
+      nees += scans_[s].nees;
+      dimensions += scans_[s].dimensions;
+    }
+    if (!(dimensions > 0.0)) return;
+    member.estimate = nees / dimensions;
+    all.push_back(exact_test(family, std::move(member), dimensions, law));
   };
   add_sum(Family::size, {.name = "all"}, 0, scans_.size());
   const std::size_t stretches = scans_.size() < 2 * kStretches ? 0 : kStretches;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "analysis/statistics/run_mean.hpp"
 #include "analysis/statistics/sums.hpp"
 #include "analysis/verdict/verdict.hpp"
 
@@ -13,28 +14,34 @@ namespace montecarta::analysis {
 /// Stretches of a drive that are judged by themselves, where there are scans for twice as many.
 inline constexpr std::size_t kStretches = 8;
 
-/// Adds up the NEES of every scan over runs, and tests the sums of single scans, which are exactly
-/// chi-square for any correlations between the errors of a run (STATISTICS 5).
+/// A ratio of squared errors to the expected ones by the runs, as a member of `family`.
+MemberTest ratio_test(Family family, Member member, const RunMean& ratio);
+
+/// Adds up the NEES of every scan over runs, and of every run over scans (STATISTICS 5).
 class SummedError {
  public:
   explicit SummedError(std::size_t scans = 0) : scans_(scans) {}
 
-  /// A NEES of `dimension` components; one that is NaN is left out.
-  void add(std::size_t scan, double nees, double dimension);
+  /// One run: its NEES {scan}, which is NaN where it is not judged, of errors of `dimension`
+  /// components. A run on a drive of its own may have fewer scans.
+  void add(std::span<const double> nees, double dimension);
+  /// Likewise, with as many components {scan} as each error has.
+  void add(std::span<const double> nees, std::span<const double> dimensions);
 
   struct Scan {
-    double nees = 0.0, dimensions = 0.0, runs = 0.0;
+    double nees = 0.0, dimensions = 0.0;
+    SummaryOf runs = {};  ///< of the NEES of a run by its components
     double ratio() const { return nees / dimensions; }
+    double n() const { return static_cast<double>(runs.result().n); }
     static constexpr auto parts() {
       return std::tuple(added(&Scan::nees, &Scan::dimensions, &Scan::runs));
     }
   };
   const std::vector<Scan>& scans() const { return scans_; }
+  /// The ratio of squared errors to the expected ones of a run, over runs that have any.
+  Summary ratios() const { return ratios_.result(); }
 
-  /// The largest number of runs that a scan has.
-  double most_runs() const;
-  /// The size by the law of errors that never change within a run, which is the widest. There must
-  /// be a run.
+  /// The size by the runs.
   MemberTest size_test() const;
   /// The family of scans; `times` [s].
   std::vector<MemberTest> scan_tests(std::span<const double> times) const;
@@ -43,13 +50,16 @@ class SummedError {
   /// Size, stretches and scans of errors that are independent from scan to scan, as the innovations
   /// of a consistent filter are: all of these sums are exactly chi-square.
   std::vector<FamilyTest> white_families(double level, std::span<const double> times) const;
-  static constexpr auto parts() { return std::tuple(added(&SummedError::scans_)); }
+  static constexpr auto parts() {
+    return std::tuple(added(&SummedError::scans_, &SummedError::ratios_));
+  }
 
  private:
-  /// The sum over scans [first, end).
-  Scan sum_of(std::size_t first, std::size_t end) const;
+  /// The skewness of the ratio of a run at a scan, by all scans together.
+  double common_skewness() const;
 
   std::vector<Scan> scans_;
+  SummaryOf ratios_;
 };
 
 }  // namespace montecarta::analysis

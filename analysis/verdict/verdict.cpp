@@ -47,8 +47,10 @@ std::vector<std::uint64_t> looks_in(const std::string& study_text, std::uint64_t
 }
 
 std::string name_of(Family family) {
-  constexpr std::array kNames = {"size", "component",   "stretch",     "scan",
-                                 "bias", "correlation", "between runs"};
+  constexpr std::array kNames = {
+      "size", "component",       "stretch",     "component by stretch",   "scan",
+      "bias", "bias by stretch", "correlation", "correlation by stretch", "between runs",
+      "tails"};
   return kNames.at(static_cast<std::size_t>(family));
 }
 
@@ -59,9 +61,12 @@ std::string key_of(Family family) {
 }
 
 std::string name_of(const Member& member) {
-  if (!member.name.empty()) return member.name;
-  if (member.from == member.to) return "at " + fixed_seconds(member.from);
-  return readable(member.from) + " s to " + readable(member.to) + " s";
+  if (std::isnan(member.from)) return member.name;
+  const bool is_scan = member.from == member.to;
+  const std::string time = is_scan ? "at " + fixed_seconds(member.from)
+                                   : readable(member.from) + " s to " + readable(member.to) + " s";
+  if (member.name.empty()) return time;
+  return member.name + (is_scan ? " " : " from ") + time;
 }
 
 const Member& FamilyTest::strongest() const {
@@ -84,13 +89,6 @@ void judge_together(std::vector<FamilyTest>& families, double level) {
     test.member_limit =
         (1.0 - level) / (std::max(holm_factor, 1.0) * static_cast<double>(test.members.size()));
   }
-}
-
-MemberTest ratio_test(Family family, Member member, const SquaresLaw& law) {
-  const double ratio = member.estimate;
-  member.p = law.p_value(ratio);
-  return {family, std::move(member),
-          [law, ratio](double level) { return law.interval(ratio, level); }};
 }
 
 std::vector<FamilyTest> judge_tests(std::vector<MemberTest> tests, double level) {
@@ -141,37 +139,65 @@ bool is_outside(const Interval& interval, const Interval& margin) {
   return interval.lower > margin.upper || interval.upper < margin.lower;
 }
 
-/// The range of negligible deviations of members of a family, for a margin of ratios.
+/// What the answer "consistent" needs of the members of a family.
+enum class Claim {
+  is_inside,       ///< shown to be within the margin
+  is_not_outside,  ///< not shown to be beyond it: they are too many to be shown inside
+  none
+};
+
+Claim claim_of(Family family) {
+  switch (family) {
+    case Family::size:
+    case Family::component:
+    case Family::stretch:
+    case Family::bias:
+    case Family::correlation:
+      return Claim::is_inside;
+    case Family::tails:
+      return Claim::none;
+    default:
+      return Claim::is_not_outside;
+  }
+}
+
+/// The range of negligible deviations of members of a family, for a margin of ratios. A bias b adds
+/// b^2 to a ratio.
 Interval margin_of(Family family, double within) {
   if (is_ratio(family)) return {1.0 / within, within};
-  const double most = family == Family::bias ? std::sqrt(within - 1.0) : within - 1.0;
+  const bool is_bias = family == Family::bias || family == Family::bias_by_stretch;
+  const double most = is_bias ? std::sqrt(within - 1.0) : within - 1.0;
   return {-most, most};
 }
 
-/// Returns whether a member allows the answer "consistent": shown to be within the margin, or, of
-/// scans and the spread between runs, not shown to be beyond it.
-bool allows_consistency(Family family, const Member& member, double within) {
-  const Interval margin = margin_of(family, within);
-  if (family == Family::scan || family == Family::between_runs) {
-    return !is_outside(member.simultaneous, margin);
-  }
-  return is_inside(member.interval, margin);
+bool is_beyond_margin(Family family, const Member& member, double within) {
+  return claim_of(family) != Claim::none &&
+         is_outside(member.simultaneous, margin_of(family, within));
 }
 
-bool is_within_margin(const Verdict& verdict) {
-  if (verdict.find(Family::size) == nullptr) return false;
-  return std::ranges::all_of(verdict.families, [&](const FamilyTest& test) {
-    return std::ranges::all_of(test.members, [&](const Member& member) {
-      return allows_consistency(test.family, member, verdict.within);
-    });
+template <class Predicate>
+bool is_any_member(const Verdict& verdict, const Predicate& predicate) {
+  return std::ranges::any_of(verdict.families, [&](const FamilyTest& test) {
+    return std::ranges::any_of(
+        test.members, [&](const Member& member) { return predicate(test.family, member); });
   });
 }
 
-Answer answer_of(const Verdict& verdict) {
+bool is_within_margin(const Verdict& verdict) {
+  const auto spoils = [&](Family family, const Member& member) {
+    const bool is_proved = claim_of(family) != Claim::is_inside ||
+                           is_inside(member.interval, margin_of(family, verdict.within));
+    return !is_proved || is_beyond_margin(family, member, verdict.within);
+  };
+  return verdict.find(Family::size) != nullptr && !is_any_member(verdict, spoils);
+}
+
+Answer answer_of_tests(const Verdict& verdict) {
   if (verdict.families.empty()) return Answer::untested;
   if (is_within_margin(verdict)) return Answer::consistent;
   bool is_above = false, is_below = false, is_rejected = false;
   for (const FamilyTest& test : verdict.families) {
+    if (claim_of(test.family) == Claim::none) continue;
     is_rejected = is_rejected || test.is_rejected;
     if (!is_ratio(test.family)) continue;
     for (const Member& member : test.members) {
@@ -183,27 +209,57 @@ Answer answer_of(const Verdict& verdict) {
   return is_rejected ? Answer::inconsistent : Answer::undecided;
 }
 
-/// Factor by which the number of runs must grow until the interval of a member that exceeds the
-/// margin is so short that it lies within the margin or shows a deviation among all tests.
-double growth_needed(Family family, const Member& member, double within) {
-  if (family == Family::scan || family == Family::between_runs) return 1.0;
-  const Interval margin = margin_of(family, within), found = member.simultaneous;
-  if (is_inside(member.interval, margin)) return 1.0;
-  const double length =
-      is_ratio(family) ? std::log(found.upper / found.lower) : found.upper - found.lower;
-  const double wanted = is_ratio(family) ? std::log(within) : margin.upper;
-  return (length / wanted) * (length / wanted);
+Answer answer_of(const Verdict& verdict) {
+  if (verdict.beside.repeated_runs > 0) return Answer::untested;
+  return verdict.beside.exact.empty() ? verdict.of_tests : Answer::inconsistent;
+}
+
+bool is_refused(const Verdict& verdict) {
+  if (verdict.answer == Answer::untested || verdict.answer == Answer::consistent) return false;
+  return !verdict.beside.exact.empty() ||
+         is_any_member(verdict, [&](Family family, const Member& member) {
+           return is_beyond_margin(family, member, verdict.within);
+         });
+}
+
+/// A scale on which intervals are symmetric.
+double on_scale(Family family, double value) { return is_ratio(family) ? std::log(value) : value; }
+
+/// Factor by which the number of runs must grow until the interval of a member lies within the
+/// margin, if the true value is where the estimate is, less the part of its distance from the right
+/// one that chance explains.
+double growth_until_inside(Family family, const Member& member, double within) {
+  const Interval margin = margin_of(family, within);
+  if (claim_of(family) != Claim::is_inside || is_inside(member.interval, margin)) return 1.0;
+  const double half =
+      0.5 * (on_scale(family, member.interval.upper) - on_scale(family, member.interval.lower));
+  const double distance = std::abs(on_scale(family, member.estimate));
+  const double room = on_scale(family, margin.upper) - std::max(0.0, distance - half);
+  constexpr double kWithChance = 1.5;  // of the half interval: it, and the estimate's own error
+  return room > 0.0 ? std::pow(kWithChance * half / room, 2) : kNaN;
+}
+
+/// The same until a member is shown to be beyond the margin; NaN if its estimate is not.
+double growth_until_outside(Family family, const Member& member, double within) {
+  if (claim_of(family) == Claim::none) return kNaN;
+  const double beyond = std::abs(on_scale(family, member.estimate)) -
+                        on_scale(family, margin_of(family, within).upper);
+  const double half = 0.5 * (on_scale(family, member.simultaneous.upper) -
+                             on_scale(family, member.simultaneous.lower));
+  return beyond > 0.0 ? std::pow(half / beyond, 2) : kNaN;
 }
 
 std::optional<std::uint64_t> more_runs_of(const Verdict& verdict, std::uint64_t runs) {
-  double growth = 1.0;
+  double inside = 1.0, outside = kNaN;
   for (const FamilyTest& test : verdict.families) {
     for (const Member& member : test.members) {
-      growth = std::max(growth, growth_needed(test.family, member, verdict.within));
+      const double growth = growth_until_inside(test.family, member, verdict.within);
+      inside = std::isnan(growth) ? growth : inside * std::max(1.0, growth / inside);
+      outside = std::fmin(outside, growth_until_outside(test.family, member, verdict.within));
     }
   }
   constexpr double kMost = 1e9, kLeastGrowth = 1.1;
-  growth = std::max(growth, kLeastGrowth);
+  const double growth = std::max(std::fmin(inside, outside), kLeastGrowth);
   const double more = std::ceil((growth - 1.0) * static_cast<double>(runs));
   if (!(more < kMost)) return std::nullopt;
   return std::max<std::uint64_t>(1, static_cast<std::uint64_t>(more));
@@ -232,33 +288,48 @@ double Verdict::ratio_estimate() const {
   return size == nullptr ? kNaN : size->members.front().estimate;
 }
 
-Verdict judge(std::vector<FamilyTest> families, double level, double within, std::uint64_t runs) {
-  Verdict verdict{.level = level, .within = within, .families = std::move(families)};
+Verdict judge(std::vector<FamilyTest> families, double level, double within, std::uint64_t runs,
+              BesideTests beside) {
+  Verdict verdict{.level = level,
+                  .within = within,
+                  .families = std::move(families),
+                  .beside = std::move(beside)};
   verdict.runs = runs;
+  verdict.of_tests = answer_of_tests(verdict);
   verdict.answer = answer_of(verdict);
-  const bool are_few = runs < kFewestRunsOfTraces;  // how many decide is not known from so few
-  if (verdict.answer == Answer::undecided) {
-    verdict.more_runs = are_few ? kFewestRunsOfTraces - runs : more_runs_of(verdict, runs);
-  }
+  verdict.is_refused = is_refused(verdict);
+  const bool is_open = verdict.answer != Answer::untested && verdict.answer != Answer::consistent &&
+                       !verdict.is_refused;
+  if (is_open && runs >= kFewestRunsOfAPlan) verdict.more_runs = more_runs_of(verdict, runs);
   return verdict;
 }
 
+void refuse_by_bets(Side side, Verdict& verdict) {
+  if (verdict.answer == Answer::consistent || verdict.answer == Answer::untested) return;
+  verdict.is_refused = true;
+  verdict.refused_by_bets = side;
+  verdict.more_runs.reset();
+  if (verdict.of_tests != Answer::undecided) return;
+  verdict.of_tests = side == Side::above ? Answer::optimistic : Answer::conservative;
+  verdict.answer = answer_of(verdict);
+}
+
 GateAnswer gate(const Verdict& verdict, const Allowance& allowed) {
+  if (verdict.beside.repeated_runs > 0) {
+    throw StudyError("the errors of run " + std::to_string(verdict.beside.first_repeat.first) +
+                     " are those of run " + std::to_string(verdict.beside.first_repeat.second) +
+                     " (runs must be independent): give each run once");
+  }
   if (verdict.failed > allowed.failed || verdict.unusable > allowed.unusable) {
     return GateAnswer::inconsistent;
   }
-  switch (verdict.answer) {
-    case Answer::untested:
-      throw StudyError(
-          "no errors to judge (no complete run, no covariance, or too few effective draws at all "
-          "scans): make more runs, have covariance in record.columns, or take more particles");
-    case Answer::consistent:
-      return GateAnswer::consistent;
-    case Answer::undecided:
-      return GateAnswer::undecided;
-    default:
-      return GateAnswer::inconsistent;
+  if (verdict.answer == Answer::untested) {
+    throw StudyError(
+        "no errors to judge (no complete run, no covariance, or too few effective draws at all "
+        "scans): make more runs, have covariance in record.columns, or take more particles");
   }
+  if (verdict.answer == Answer::consistent) return GateAnswer::consistent;
+  return verdict.is_refused ? GateAnswer::inconsistent : GateAnswer::undecided;
 }
 
 }  // namespace montecarta::analysis

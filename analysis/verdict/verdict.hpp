@@ -3,7 +3,7 @@
 
 #include "analysis/statistics/nees_bounds.hpp"
 #include "analysis/statistics/spread.hpp"
-#include "analysis/statistics/squares_law.hpp"
+#include "analysis/verdict/bets.hpp"
 
 #include <array>
 #include <cstdint>
@@ -12,6 +12,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace montecarta::analysis {
@@ -37,25 +38,41 @@ std::vector<std::uint64_t> looks_in(const std::string& study_text, std::uint64_t
 
 /// Subject of a family of tests (STATISTICS 5).
 enum class Family {
-  size,         ///< squared errors of all components at all scans
-  component,    ///< squared errors of one component at all scans
-  stretch,      ///< squared errors of all components in one eighth of the scans
-  scan,         ///< squared errors of all components at one scan
-  bias,         ///< mean error of one component, in deviations
-  correlation,  ///< between two components, beyond the reported one
-  between_runs  ///< standard deviation of the scales that runs have of their own
+  size,                    ///< squared errors of all components at all scans
+  component,               ///< squared errors of one component at all scans
+  stretch,                 ///< squared errors of all components in one eighth of the scans
+  component_by_stretch,    ///< squared errors of one component in one eighth
+  scan,                    ///< squared errors of all components at one scan
+  bias,                    ///< mean error of one component, in deviations
+  bias_by_stretch,         ///< the same in one eighth
+  correlation,             ///< between two components, beyond the reported one
+  correlation_by_stretch,  ///< the same in one eighth
+  between_runs,            ///< standard deviation of the scales that runs have of their own
+  tails                    ///< fourth moment and largest error: a finding, no part of the answer
 };
 
-inline constexpr std::array kFamilies = {
-    Family::size, Family::component,   Family::stretch,     Family::scan,
-    Family::bias, Family::correlation, Family::between_runs};
+inline constexpr std::array kFamilies = {Family::size,
+                                         Family::component,
+                                         Family::stretch,
+                                         Family::component_by_stretch,
+                                         Family::scan,
+                                         Family::bias,
+                                         Family::bias_by_stretch,
+                                         Family::correlation,
+                                         Family::correlation_by_stretch,
+                                         Family::between_runs,
+                                         Family::tails};
+
+/// Studies of fewer complete runs are judged by single scans alone: runs say nothing of how much
+/// they vary.
+inline constexpr std::size_t kFewestJudgedRuns = 3;
+/// Of fewer runs the intervals are too uncertain themselves to say how many more are needed: a
+/// standard deviation of ten values is known to a quarter.
+inline constexpr std::size_t kFewestRunsOfAPlan = 10;
 
 /// Returns whether members of a family are ratios of squared errors to the expected ones; else they
 /// are numbers that are zero if the filter is consistent.
-constexpr bool is_ratio(Family family) {
-  return family == Family::size || family == Family::component || family == Family::stretch ||
-         family == Family::scan;
-}
+constexpr bool is_ratio(Family family) { return family <= Family::scan; }
 
 /// "between runs", for readers.
 std::string name_of(Family family);
@@ -100,9 +117,6 @@ struct MemberTest {
   std::function<Interval(double level)> interval;
 };
 
-/// A ratio of squared errors to the expected ones, member.estimate, with its law.
-MemberTest ratio_test(Family family, Member member, const SquaresLaw& law);
-
 /// Families in the order of kFamilies, with intervals, judged together at `level`.
 std::vector<FamilyTest> judge_tests(std::vector<MemberTest> tests, double level);
 
@@ -122,24 +136,48 @@ enum class Answer {
   consistent,    ///< every deviation is shown to be within the margin
   optimistic,    ///< squared errors are shown to be larger than claimed
   conservative,  ///< squared errors are shown to be smaller than claimed
-  inconsistent,  ///< both, in different parts; or bias, correlation or spread between runs alone
+  inconsistent,  ///< both, in different parts; or bias, correlation, spread between runs, or an
+                 ///< error of a component that is claimed to be exact, alone
   undecided      ///< neither is shown: more runs are needed
 };
 
 /// "consistent", ...
 std::string name_of(Answer answer);
 
+/// What is said of errors beside the tests.
+struct BesideTests {
+  struct Exact {
+    std::string component;
+    double error;  ///< the largest one, in the unit of the component
+  };
+  /// Components that the filter claims to know exactly and that have errors. They are in no test.
+  std::vector<Exact> exact = {};
+  /// Runs whose errors are those of an earlier run, number by number; the first of them and that
+  /// earlier one. Runs must be independent.
+  std::uint64_t repeated_runs = 0;
+  std::pair<std::uint64_t, std::uint64_t> first_repeat = {};
+  /// Of the ratio being the same in all stretches. Times are named only if it is not.
+  double p_of_equal_stretches = 1.0;
+};
+
 /// Verdict on the covariances of a cell (STATISTICS 5).
 struct Verdict {
   Answer answer = Answer::untested;
-  double level = 0.95;           ///< of all tests together
-  double within = kUsualMargin;  ///< the margin r: ratios in [1/r, r] are consistent
+  Answer of_tests = Answer::untested;  ///< by the tests alone, without regard to `beside`
+  double level = 0.95;                 ///< of all tests together
+  double within = kUsualMargin;        ///< the margin r: ratios in [1/r, r] are consistent
   std::vector<FamilyTest> families = {};
+  BesideTests beside = {};
   std::uint64_t runs = 0;      ///< that ended, complete or failed
   std::uint64_t failed = 0;    ///< of them
   std::uint64_t samples = 0;   ///< of the complete runs, one a scan
   std::uint64_t unusable = 0;  ///< of them: no finite error or no covariance matrix
   std::optional<std::uint64_t> more_runs = {};  ///< needed for a decision, if known
+  /// Whether a deviation is shown to be beyond the margin, at `level` for all tests together: only
+  /// then is the filter refused. A deviation within the margin is called slight.
+  bool is_refused = false;
+  /// The side of the margin on which bets refuse the filter, in a study with interim analyses.
+  std::optional<Side> refused_by_bets = {};
 
   /// nullptr where the family does not apply.
   const FamilyTest* find(Family family) const;
@@ -150,7 +188,11 @@ struct Verdict {
 
 /// Judges families that were judged together at `level` by the margin `within`, from `runs`
 /// complete runs.
-Verdict judge(std::vector<FamilyTest> families, double level, double within, std::uint64_t runs);
+Verdict judge(std::vector<FamilyTest> families, double level, double within, std::uint64_t runs,
+              BesideTests beside = {});
+
+/// Refuses a filter by bets (STATISTICS 18), unless it is shown to be consistent.
+void refuse_by_bets(Side side, Verdict& verdict);
 
 /// For a table: "consistent within 1.1", "optimistic: NEES 1.28 to 2.25 times too large", ...
 /// Failed runs and unusable samples are part of it.

@@ -2,292 +2,316 @@
 #include "analysis/verdict/whole_error.hpp"
 
 #include "analysis/statistics/distributions.hpp"
+#include "analysis/statistics/run_mean.hpp"
 #include "engine/errors.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <map>
 #include <utility>
 
 namespace montecarta::analysis {
 namespace {
 
-constexpr double kLeastShare = 0.5;    // of errors that two runs have in common
-constexpr double kFewestErrors = 3.0;  // of which a root mean square is taken
-constexpr std::size_t kMostKeptRuns = 256;
-constexpr double kLeastShareOfSpread = 0.98;  // of errors that two runs have in common
-constexpr double kMostSingularSamples = 0.1;
+constexpr std::size_t kFewestKeptRuns = 50, kMostKeptRuns = 256;
 constexpr std::size_t kMostKeptErrors = 8'000'000;  // 64 MB
+/// Shorter sequences of errors may be equal by chance, since files have few digits.
+constexpr std::size_t kFewestErrorsOfARepeat = 8;
 
-/// The mean over runs of a number that is zero if the filter is consistent.
-void add_zero_mean(Family family, const std::string& name, const Summary& mean,
-                   std::vector<MemberTest>& all) {
-  if (mean.n < kFewestJudgedRuns) return;
-  Member member{.name = name, .estimate = mean.mean};
-  const bool is_zero = mean.mean == 0.0 && mean.sd == 0.0;
-  member.p = is_zero
-                 ? 1.0
-                 : t_p_value(mean.mean / mean.standard_error(), static_cast<double>(mean.n) - 1.0);
-  all.push_back({family, std::move(member), [mean](double level) { return mean.interval(level); }});
+std::vector<std::size_t> ends_of_stretches(std::size_t scans) {
+  const std::size_t stretches = scans < 2 * kStretches ? 1 : kStretches;
+  std::vector<std::size_t> ends;
+  for (std::size_t s = 1; s <= stretches; ++s) ends.push_back(s * scans / stretches);
+  return ends;
 }
 
-/// The deviation of the scales that runs have of their own; only too large a one counts.
-MemberTest spread_test(const Summary& variance) {
-  const auto root = [](double value) { return std::sqrt(std::max(0.0, value)); };
-  Member member{.name = "runs", .estimate = root(variance.mean)};
-  const double t = variance.mean / variance.standard_error();
-  member.p = t > 0.0 ? 0.5 * t_p_value(t, static_cast<double>(variance.n) - 1.0) : 1.0;
-  return {Family::between_runs, std::move(member), [variance, root](double level) {
-            const Interval of_variance = variance.interval(level);
-            return Interval{root(of_variance.lower), root(of_variance.upper)};
-          }};
+/// A sum of numbers of one run, some of which are NaN.
+struct Mean {
+  double sum = 0.0, n = 0.0;
+  void add(double value) {
+    if (std::isnan(value)) return;
+    sum += value;
+    n += 1.0;
+  }
+  void add(const Mean& other) {
+    sum += other.sum;
+    n += other.n;
+  }
+  double mean() const { return sum / n; }  ///< NaN of nothing
+  void end_run(SummaryOf& runs) const {
+    if (n > 0.0) runs.add(mean());
+  }
+};
+
+/// Numbers of one run, {number}, in one stretch and in the whole drive.
+class Means {
+ public:
+  explicit Means(std::size_t numbers) : whole_(numbers), stretch_(numbers) {}
+  void add(std::size_t number, double value) { stretch_[number].add(value); }
+  template <class OverDrive>
+  void end_stretch(std::size_t stretch, std::vector<OverDrive>& over_runs) {
+    for (std::size_t k = 0; k < stretch_.size(); ++k) {
+      if (!over_runs[k].stretch.empty()) stretch_[k].end_run(over_runs[k].stretch[stretch]);
+      whole_[k].add(std::exchange(stretch_[k], {}));
+    }
+  }
+  /// Over the whole drive.
+  double mean(std::size_t number) const { return whole_[number].mean(); }
+  template <class OverDrive>
+  void end_run(std::vector<OverDrive>& over_runs) {
+    for (std::size_t k = 0; k < whole_.size(); ++k) whole_[k].end_run(over_runs[k].whole);
+  }
+
+ private:
+  std::vector<Mean> whole_, stretch_;
+};
+
+/// The same family in single stretches.
+Family by_stretch(Family family) {
+  return family == Family::component ? Family::component_by_stretch
+         : family == Family::bias    ? Family::bias_by_stretch
+                                     : Family::correlation_by_stretch;
+}
+
+MemberTest zero_test(Family family, Member member, const RunMean& mean) {
+  member.estimate = mean.mean();
+  member.p = mean.p_value(0.0);
+  return {family, std::move(member), [mean](double level) { return mean.interval(level); }};
 }
 
 }  // namespace
 
-void AspectProducts::add(const AspectProducts& other) {
-  products.add(other.products);
-  for (std::size_t run = 0; run < terms_of_run.size(); ++run) {
-    terms_of_run[run] += other.terms_of_run[run];
-  }
-  common_terms += other.common_terms;
-  constant_root += other.constant_root;
-}
-
-double AspectProducts::terms() const { return mean_of(terms_of_run); }
-
-Traces AspectProducts::traces() const {
-  const double largest = constant_root * constant_root;
-  if (products.runs() < kFewestRunsOfTraces || !(share() >= kLeastShare)) {
-    return traces_of_constant_errors(terms(), largest);
-  }
-  return traces_of(products, terms(), largest, share());
-}
-
-// With all sums in units of t_1: Var z = 2 t_2 (1 + v) + v t_1^2, where v is the variance of the
-// scales, and the mean of G_ij^2 is t_2. The factors correct the division of the errors by the
-// sample's own root mean square.
-Summary AspectProducts::variance_of_scales() const {
-  const auto n = static_cast<double>(products.runs());
-  const MeanSquaredProduct squares = mean_squared_product(products);
-  const double scale = squares.mean + 0.5 * terms() * terms();
-  SummaryOf variance;
-  for (std::size_t i = 0; i < products.runs(); ++i) {
-    const double deviation = products(i, i) - terms_of_run[i];
-    const double own = (n + 2.0) / (n - 1.0) * 0.5 * deviation * deviation;
-    const double others = (n + 2.0) / n * (n * squares.mean - (n - 1.0) * squares.without[i]);
-    variance.add((own - others) / scale);
-  }
-  return variance.result();
-}
-
-DividedErrors::DividedErrors(const ErrorsOfRuns& errors, std::size_t scans, std::size_t dimension)
-    : dimension_(dimension),
-      errors_(errors),
-      counts_(scans * dimension),
-      scale_(scans * dimension, kNaN) {
-  const std::size_t places = counts_.size();
-  std::vector<double> squares(places);
-  for (const std::vector<double>& of_run : errors_) {
-    expect(of_run.size() == places, "errors are {scan, component}");
-    for (std::size_t place = 0; place < places; ++place) {
-      if (std::isnan(of_run[place])) continue;
-      squares[place] += of_run[place] * of_run[place];
-      counts_[place] += 1.0;
-    }
-  }
-  for (std::size_t place = 0; place < places; ++place) {
-    double& n = counts_[place];
-    if (!(n >= kFewestErrors && squares[place] > 0.0)) n = 0.0;
-    if (n > 0.0) scale_[place] = 1.0 / std::sqrt(squares[place] / n);
-  }
-}
-
-AspectProducts DividedErrors::products(const Aspect& aspect) const {
-  AspectProducts found(runs());
-  const auto n = static_cast<double>(runs());
-  std::vector<std::size_t> places;
-  for (std::size_t s = aspect.first_scan; s < aspect.end_scan; ++s) {
-    double here = 0.0;
-    for (std::size_t k = aspect.first_component; k < aspect.end_component; ++k) {
-      const double count = counts_[places.emplace_back(s * dimension_ + k)];
-      here += count / n;
-      found.common_terms += count * std::max(count - 1.0, 0.0) / (n * (n - 1.0));
-    }
-    found.constant_root += std::sqrt(here);
-  }
-  std::vector<double> rows;
-  rows.reserve(runs() * places.size());
-  for (std::size_t run = 0; run < runs(); ++run) {
-    for (const std::size_t place : places) {
-      const double error = errors_[run][place] * scale_[place];
-      const bool is_there = !std::isnan(error);
-      rows.push_back(is_there ? error : 0.0);
-      found.terms_of_run[run] += is_there ? 1.0 : 0.0;
-    }
-  }
-  found.products.add(rows, places.size());
-  return found;
-}
-
-void WholeError::Sum::add(double error) {
-  if (std::isnan(error)) return;
-  squares += error * error;
-  terms += 1.0;
-  terms_of_run += 1.0;
-}
-
-void WholeError::Sum::end_run() {
-  squared_terms += terms_of_run * terms_of_run;
-  terms_of_run = 0.0;
-}
-
 WholeError::WholeError(std::size_t dimension, std::size_t scans)
     : dimension_(dimension),
-      scans_(scans),
-      stretches_(scans < 2 * kStretches ? 1 : kStretches),
-      component_(dimension),
-      stretch_(stretches_),
+      ends_(ends_of_stretches(scans)),
       nees_(scans),
-      bias_(dimension),
-      correlation_(dimension * (dimension - 1) / 2) {}
+      stretch_(ends_.size()),
+      against_run_(ends_.size()),
+      groups_(dimension, ends_),
+      bets_{std::vector<Bets>(1), std::vector<Bets>(dimension > 1 ? dimension : 0),
+            std::vector<Bets>(ends_.size() > 1 ? ends_.size() : 0)},
+      exact_(dimension) {
+  OverDrive number;
+  if (stretches() > 1) number.stretch.resize(stretches());
+  component_.assign(dimension, number);
+  bias_ = component_;
+  if (has_pairs()) correlation_.assign(dimension * (dimension - 1) / 2, number);
+}
 
 void WholeError::add(const WhitenedRun& run, std::span<const double> nees) {
-  expect(run.dimension == dimension_ && run.whitened.size() == scans_ * dimension_,
+  expect(run.dimension == dimension_ && run.whitened.size() == ends_.back() * dimension_ &&
+             run.standardised.size() == run.whitened.size(),
          "errors are {scan, component}");
-  for (std::size_t s = 0; s < scans_; ++s) {
-    nees_.add(s, nees[s], static_cast<double>(dimension_));
+  nees_.add(nees, static_cast<double>(dimension_));
+  for (std::size_t k = 0; k < run.errors_of_exact.size(); ++k) {
+    exact_[k].merge({run.errors_of_exact[k]});
   }
+  if (std::ranges::all_of(nees, [](double value) { return std::isnan(value); })) return;
+  add_stretches(nees);
+  add_components(run);
+  add_fingerprint(run);
   if (std::ranges::all_of(run.whitened, [](double u) { return std::isnan(u); })) return;
-  ++runs_;
-  add_squares(run);
-  add_means(run);
-  if (whitened_.size() == most_kept_runs()) return;
-  whitened_.push_back(run.whitened);
-  standardised_.push_back(run.standardised);
+  add_correlations(run);
+  groups_.add(run.whitened);
+  if (!has_pairs() && whitened_.size() < most_kept_runs()) whitened_.push_back(run.whitened);
 }
 
 std::size_t WholeError::most_kept_runs() const {
-  const std::size_t length = std::max<std::size_t>(scans_ * dimension_, 1);
-  return std::clamp(kMostKeptErrors / length, kFewestRunsOfSpread, kMostKeptRuns);
+  const std::size_t length = std::max<std::size_t>(ends_.back() * dimension_, 1);
+  return std::clamp(kMostKeptErrors / length, kFewestKeptRuns, kMostKeptRuns);
 }
 
-void WholeError::add_squares(const WhitenedRun& run) {
-  for (std::size_t s = 0; s < scans_; ++s) {
-    const auto errors = std::span(run.whitened).subspan(s * dimension_, dimension_);
-    const bool has_any = std::ranges::any_of(errors, [](double u) { return !std::isnan(u); });
-    whole_samples_ += has_any ? 1.0 : 0.0;
+void WholeError::add_stretches(std::span<const double> nees) {
+  std::vector<Mean> ratios(stretches());
+  Mean whole;
+  for (std::size_t k = 0; k < stretches(); ++k) {
+    for (std::size_t s = first_scan(k); s < ends_[k]; ++s) {
+      ratios[k].add(nees[s] / static_cast<double>(dimension_));
+    }
+    whole.add(ratios[k]);
   }
-  Sum size = size_;  // registers add faster than memory
-  for (std::size_t stretch = 0; stretch < stretches_; ++stretch) {
-    Sum sum = stretch_[stretch];
-    for (std::size_t s = first_scan(stretch); s < first_scan(stretch + 1); ++s) {
-      for (std::size_t k = 0; k < dimension_; ++k) {
-        size.add(run.whitened[s * dimension_ + k]);
-        sum.add(run.whitened[s * dimension_ + k]);
-        component_[k].add(run.standardised[s * dimension_ + k]);
+  bets_[0][0].add(whole.mean());
+  for (std::size_t k = 0; k < stretches(); ++k) {
+    ratios[k].end_run(stretch_[k]);
+    if (stretches() > 1) bets_[2][k].add(ratios[k].mean());
+    if (ratios[k].n > 0.0) against_run_[k].add(ratios[k].mean() - whole.mean());
+  }
+}
+
+void WholeError::add_components(const WhitenedRun& run) {
+  Means squares(dimension_), means(dimension_);
+  std::size_t place = 0;
+  for (std::size_t stretch = 0; stretch < stretches(); ++stretch) {
+    while (place < ends_[stretch] * dimension_) {
+      for (std::size_t k = 0; k < dimension_; ++k, ++place) {
+        const double z = run.standardised[place];
+        squares.add(k, z * z);
+        means.add(k, z);
       }
     }
-    sum.end_run();
-    stretch_[stretch] = sum;
+    squares.end_stretch(stretch, component_);
+    means.end_stretch(stretch, bias_);
   }
-  size.end_run();
-  size_ = size;
-  for (Sum& sum : component_) sum.end_run();
+  for (std::size_t k = 0; k < bets_[1].size(); ++k) bets_[1][k].add(squares.mean(k));
+  squares.end_run(component_);
+  means.end_run(bias_);
 }
 
-void WholeError::add_means(const WhitenedRun& run) {
-  struct Mean {
-    double sum = 0.0, n = 0.0;
-    void add(double value) {
-      if (std::isnan(value)) return;
-      sum += value;
-      n += 1.0;
+void WholeError::add_correlations(const WhitenedRun& run) {
+  Means products(correlation_.size());
+  for (std::size_t stretch = 0; stretch < stretches(); ++stretch) {
+    for (std::size_t s = first_scan(stretch); s < ends_[stretch]; ++s) {
+      const double* const u = run.whitened.data() + s * dimension_;
+      for (std::size_t a = 0; a < dimension_; ++a) {
+        const double deviations = std::abs(u[a]);
+        if (!std::isnan(deviations)) ++largest_.samples;
+        if (deviations > largest_.deviations) {
+          largest_.deviations = deviations;
+          largest_.run = run.number;
+          largest_.scan = s;
+          largest_.component = a;
+        }
+      }
+      std::size_t pair = 0;
+      for (std::size_t a = 0; has_pairs() && a < dimension_; ++a) {
+        for (std::size_t b = a + 1; b < dimension_; ++b) products.add(pair++, u[a] * u[b]);
+      }
     }
-    void end_run(SummaryOf& means) const {
-      if (n > 0.0) means.add(sum / n);
-    }
+    products.end_stretch(stretch, correlation_);
+  }
+  products.end_run(correlation_);
+}
+
+void WholeError::Largest::merge(const Largest& next) {
+  const std::uint64_t all = samples + next.samples;
+  if (next.deviations > deviations) *this = next;
+  samples = all;
+}
+
+/// Runs whose errors are the same bit by bit have the same fingerprint, others hardly ever.
+void WholeError::add_fingerprint(const WhitenedRun& run) {
+  std::uint64_t hash = 0;
+  std::size_t n = 0;
+  for (const double error : run.standardised) {
+    if (error == 0.0 || std::isnan(error) || std::abs(error) == kLargestError) continue;
+    ++n;
+    hash = (hash ^ std::bit_cast<std::uint64_t>(error)) * 0x9e3779b97f4a7c15ULL;
+    hash ^= hash >> 29;
+  }
+  if (n < kFewestErrorsOfARepeat) return;
+  fingerprints_.push_back(hash);
+  numbers_.push_back(run.number);
+}
+
+Member WholeError::in_stretch(std::string name, std::size_t stretch,
+                              const ErrorNames& names) const {
+  Member member{.name = std::move(name)};
+  member.from = names.times[first_scan(stretch)];
+  member.to = names.times[ends_[stretch] - 1];
+  return member;
+}
+
+void WholeError::add_stretch_tests(const ErrorNames& names, std::vector<MemberTest>& all) const {
+  for (std::size_t k = 0; stretches() > 1 && k < stretches(); ++k) {
+    const Summary ratio = stretch_[k].result();
+    if (ratio.n < kFewestJudgedRuns) continue;
+    all.push_back(ratio_test(Family::stretch, in_stretch("", k, names), RunMean::of_ratio(ratio)));
+  }
+}
+
+template <class Test>
+void WholeError::add_tests(const OverDrive& number, const std::string& name,
+                           const ErrorNames& names, Test test, std::vector<MemberTest>& all) const {
+  const Summary whole = number.whole.result();
+  if (whole.n < kFewestJudgedRuns) return;
+  all.push_back(test(Member{.name = name}, whole));
+  for (std::size_t k = 0; k < number.stretch.size(); ++k) {
+    const Summary part = number.stretch[k].result();
+    if (part.n < kFewestJudgedRuns) continue;
+    all.push_back(test(in_stretch(name, k, names), part));
+    all.back().family = by_stretch(all.back().family);
+  }
+}
+
+void WholeError::add_correlation_tests(const ErrorNames& names,
+                                       std::vector<MemberTest>& all) const {
+  const double ratio = nees_.ratios().mean;
+  if (!(ratio > 0.0)) return;
+  const auto test = [ratio](Member member, const Summary& runs) {
+    return zero_test(Family::correlation, std::move(member),
+                     RunMean::of_product(runs).in_units_of(ratio));
   };
-  std::vector<Mean> bias(bias_.size()), correlation(correlation_.size());
-  for (std::size_t at = 0; at < scans_ * dimension_; at += dimension_) {
-    auto pair = correlation.begin();
-    for (std::size_t a = at; a < at + dimension_; ++a) {
-      bias[a - at].add(run.standardised[a]);
-      for (std::size_t b = a + 1; b < at + dimension_; ++b) {
-        (pair++)->add(run.whitened[a] * run.whitened[b]);
-      }
-    }
-  }
-  for (std::size_t a = 0; a < bias.size(); ++a) bias[a].end_run(bias_[a]);
-  for (std::size_t p = 0; p < correlation.size(); ++p) correlation[p].end_run(correlation_[p]);
-}
-
-/// Returns whether at most a tenth of the samples have a singular covariance. Otherwise the size is
-/// judged by the NEES as well, which those samples have too.
-bool WholeError::are_most_samples_whole() const {
-  double judged = 0.0;
-  for (const SummedError::Scan& scan : nees_.scans()) judged += scan.runs;
-  return whole_samples_ >= (1.0 - kMostSingularSamples) * judged;
-}
-
-void WholeError::add_variances(const ErrorNames& names, const DividedErrors& whitened,
-                               std::vector<MemberTest>& all) const {
-  AspectProducts size(whitened.runs());
-  for (std::size_t s = 0; s < stretches_; ++s) {
-    const std::size_t first = first_scan(s), end = first_scan(s + 1);
-    const AspectProducts found = whitened.products({first, end, 0, dimension_});
-    size.add(found);
-    if (stretches_ == 1 || !(found.terms() > 0.0)) continue;
-    Member member{.from = names.times[first], .to = names.times[end - 1]};
-    member.estimate = stretch_[s].ratio();
-    all.push_back(
-        ratio_test(Family::stretch, member, SquaresLaw(found.traces(), stretch_[s].runs())));
-  }
-  if (!(size.terms() > 0.0)) return;
-  if (!are_most_samples_whole()) all.push_back(nees_.size_test());
-  all.push_back(ratio_test(Family::size, {.name = "all", .estimate = size_.ratio()},
-                           SquaresLaw(size.traces(), size_.runs())));
-  add_components(names, all);
-  // Runs without all samples vary more between each other than the products of two of them show.
-  const bool are_alike = size.share() > kLeastShareOfSpread;
-  if (are_alike && whitened.runs() >= kFewestRunsOfSpread) {
-    all.push_back(spread_test(size.variance_of_scales()));
-  }
-}
-
-void WholeError::add_components(const ErrorNames& names, std::vector<MemberTest>& all) const {
-  if (dimension_ == 1) return;
-  const DividedErrors errors(standardised_, scans_, dimension_);
-  for (std::size_t k = 0; k < dimension_; ++k) {
-    const AspectProducts found = errors.products({0, scans_, k, k + 1});
-    if (!(found.terms() > 0.0)) continue;
-    Member member{.name = names.components[k], .estimate = component_[k].ratio()};
-    const SquaresLaw law(found.traces(), component_[k].runs());
-    all.push_back(ratio_test(Family::component, std::move(member), law));
-  }
-}
-
-void WholeError::add_means(const ErrorNames& names, std::vector<MemberTest>& all) const {
-  for (std::size_t a = 0; a < dimension_; ++a) {
-    add_zero_mean(Family::bias, names.components[a], bias_[a].result(), all);
-  }
   std::size_t pair = 0;
-  for (std::size_t a = 0; a < dimension_; ++a) {
+  for (std::size_t a = 0; has_pairs() && a < dimension_; ++a) {
     for (std::size_t b = a + 1; b < dimension_; ++b) {
-      add_zero_mean(Family::correlation, names.components[a] + " and " + names.components[b],
-                    correlation_[pair++].result(), all);
+      add_tests(correlation_[pair++], names.components[a] + " and " + names.components[b], names,
+                test, all);
     }
   }
+  for (MemberTest& one : direction_tests(whitened_, ratio, names.components)) {
+    all.push_back(std::move(one));
+  }
+}
+
+/// The largest error of all, by the normal law and the number of errors, whatever their dependence
+/// is: it exceeds so many deviations with that probability at most. Errors are compared with the
+/// size that they have, so that a filter that is optimistic everywhere has no heavy tail by that.
+void WholeError::add_largest_test(const ErrorNames& names, std::vector<MemberTest>& all) const {
+  if (largest_.samples == 0) return;
+  const double ratio = std::max(1.0, nees_.ratios().mean);
+  const double tail = normal_cdf(-largest_.deviations / std::sqrt(ratio));
+  Member member{
+      .name = names.components[largest_.component] + " in run " + std::to_string(largest_.run),
+      .estimate = largest_.deviations};
+  member.from = member.to = names.times[largest_.scan];
+  member.p = std::min(1.0, 2.0 * tail * static_cast<double>(largest_.samples));
+  all.push_back({Family::tails, std::move(member), [](double) { return Interval{kNaN, kNaN}; }});
 }
 
 std::vector<FamilyTest> WholeError::families(double level, const ErrorNames& names) const {
-  if (runs_ < kFewestJudgedRuns) {
-    return nees_.most_runs() < kFewestJudgedRuns ? std::vector<FamilyTest>{}
-                                                 : nees_.families(level, names.times);
-  }
   std::vector<MemberTest> all = nees_.scan_tests(names.times);
-  add_variances(names, DividedErrors(whitened_, scans_, dimension_), all);
-  add_means(names, all);
+  if (nees_.ratios().n < kFewestJudgedRuns) return judge_tests(std::move(all), level);
+  all.push_back(nees_.size_test());
+  add_stretch_tests(names, all);
+  const auto squares = [](Member member, const Summary& runs) {
+    return ratio_test(Family::component, std::move(member), RunMean::of_ratio(runs));
+  };
+  const auto mean = [](Member member, const Summary& runs) {
+    return zero_test(Family::bias, std::move(member), RunMean::of_symmetric(runs));
+  };
+  for (std::size_t k = 0; k < dimension_; ++k) {
+    if (dimension_ > 1) add_tests(component_[k], names.components[k], names, squares, all);
+    add_tests(bias_[k], names.components[k], names, mean, all);
+  }
+  add_correlation_tests(names, all);
+  groups_.add_tests(all);
+  add_largest_test(names, all);
   return judge_tests(std::move(all), level);
+}
+
+std::optional<Side> WholeError::refused_by_bets(double margin, double level) const {
+  return refused_side(bets_, margin, level);
+}
+
+BesideTests WholeError::beside_tests(const ErrorNames& names) const {
+  BesideTests found;
+  for (std::size_t k = 0; k < exact_.size(); ++k) {
+    if (exact_[k].value > 0.0) found.exact.push_back({names.components[k], exact_[k].value});
+  }
+  std::map<std::uint64_t, std::uint64_t> first_of;
+  for (std::size_t k = 0; k < fingerprints_.size(); ++k) {
+    const auto [first, is_new] = first_of.try_emplace(fingerprints_[k], numbers_[k]);
+    if (is_new) continue;
+    if (found.repeated_runs++ == 0) found.first_repeat = {numbers_[k], first->second};
+  }
+  double least = 1.0;
+  for (const SummaryOf& difference : against_run_) {
+    least = std::min(least, RunMean::of_product(difference.result()).p_value(0.0));
+  }
+  found.p_of_equal_stretches =
+      stretches() > 1 ? std::min(1.0, least * static_cast<double>(stretches())) : 1.0;
+  return found;
 }
 
 }  // namespace montecarta::analysis

@@ -2,76 +2,34 @@
 #pragma once
 
 #include "analysis/statistics/spread.hpp"
-#include "analysis/statistics/squares_law.hpp"
+#include "analysis/verdict/bets.hpp"
+#include "analysis/verdict/run_groups.hpp"
 #include "analysis/verdict/summed_error.hpp"
+#include "analysis/verdict/worst_direction.hpp"
 
+#include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace montecarta::analysis {
 
-/// A range of scans and of components; ends lie behind the last one.
-struct Aspect {
-  std::size_t first_scan, end_scan;
-  std::size_t first_component, end_component;
-};
+/// Errors in units of their deviation are cut to this one.
+inline constexpr double kLargestError = 1e30;
 
-/// Statistics of an aspect by the products of the errors of different runs (STATISTICS 5).
-struct AspectProducts {
-  explicit AspectProducts(std::size_t runs) : products(runs), terms_of_run(runs) {}
-
-  /// Adds an aspect that has no error in common with this one.
-  void add(const AspectProducts& other);
-  /// Mean number of errors of a run.
-  double terms() const;
-  /// Share of its errors that a run has in common with another one.
-  double share() const { return common_terms / terms(); }
-  Traces traces() const;
-  /// Variance of the scales of single runs: the part of the variance of sums of squares between
-  /// runs that the products of different runs do not explain; 0 if there are no such scales. Its
-  /// standard error follows from the pseudo-values of the jackknife.
-  Summary variance_of_scales() const;
-
-  RunProducts products;
-  std::vector<double> terms_of_run;
-  double common_terms = 0.0;  ///< errors that two runs have in common, on the average
-  /// Sum over scans of the root of the errors at a scan: its square is the second trace of errors
-  /// that never change, since errors of different components are independent.
-  double constant_root = 0.0;
-};
-
-/// {run}{scan, component}; NaN where there is no error.
-using ErrorsOfRuns = std::vector<std::vector<double>>;
-
-/// Errors of some runs, divided by their root mean square over these runs at every scan and in
-/// every component.
-class DividedErrors {
- public:
-  /// `errors` must outlive it.
-  DividedErrors(const ErrorsOfRuns& errors, std::size_t scans, std::size_t dimension);
-  DividedErrors(ErrorsOfRuns&& errors, std::size_t scans, std::size_t dimension) = delete;
-
-  std::size_t runs() const { return errors_.size(); }
-  AspectProducts products(const Aspect& aspect) const;
-
- private:
-  std::size_t dimension_;
-  const ErrorsOfRuns& errors_;
-  std::vector<double> counts_;  ///< {scan, component} of runs; 0 where they are too few
-  std::vector<double> scale_;   ///< {scan, component} one over the root mean square, else NaN
-};
-
-/// The spread between runs is judged from so many runs on.
-inline constexpr std::size_t kFewestRunsOfSpread = 50;
-
-/// Errors of one run in units of the covariance that its filter reported, {scan, component}.
-/// Samples that cannot be judged by component are NaN.
+/// Errors of one run in units of the covariance that its filter reported.
 struct WhitenedRun {
   std::size_t dimension = 0;
-  std::vector<double> whitened;      ///< L^-1 e, where the covariance is L L'
-  std::vector<double> standardised;  ///< each component divided by its own deviation
+  /// {scan, component} L^-1 e, where the covariance is L L'; NaN where it is singular.
+  std::vector<double> whitened;
+  /// {scan, component} Each component divided by its own deviation; NaN where this is 0.
+  std::vector<double> standardised;
+  /// {component} The largest error where the reported deviation is 0; 0 if there is none.
+  std::vector<double> errors_of_exact = {};
+  std::uint64_t number = 0;  ///< of the run
 };
 
 /// Names of the components and times [s] of the scans, for the members of families.
@@ -81,57 +39,91 @@ struct ErrorNames {
 };
 
 /// Adds up the errors of the complete runs of one cell and tests them (STATISTICS 5). Memory
-/// depends on the scans alone: the errors of the first runs are kept, at most 256 of them.
+/// depends on scans and components, and grows by two numbers with every run; of errors of more than
+/// kMostComponentsInPairs components those of the first runs are kept, at most 256 of them.
 class WholeError {
  public:
+  /// Correlations of errors of more components are judged by direction_tests().
+  static constexpr std::size_t kMostComponentsInPairs = 6;
+
   WholeError() = default;  ///< to be read
   WholeError(std::size_t dimension, std::size_t scans);
 
   /// One run, with its NEES {scan}, which is NaN where it is not judged.
   void add(const WhitenedRun& run, std::span<const double> nees);
-  /// The families that apply, judged together at `level`; none of fewer than kFewestJudgedRuns.
+  /// The families that apply, judged together at `level`; of fewer than kFewestJudgedRuns runs the
+  /// scans alone.
   std::vector<FamilyTest> families(double level, const ErrorNames& names) const;
+  /// The side of the margin on which bets on the ratios of runs refuse the filter (STATISTICS 18).
+  std::optional<Side> refused_by_bets(double margin, double level) const;
+  /// What is told beside the tests.
+  BesideTests beside_tests(const ErrorNames& names) const;
   static constexpr auto parts() {
     using Sums = WholeError;
     return std::tuple(
-        settings(&Sums::dimension_, &Sums::scans_, &Sums::stretches_),
-        added(&Sums::runs_, &Sums::whole_samples_, &Sums::size_, &Sums::component_, &Sums::stretch_,
-              &Sums::nees_, &Sums::bias_, &Sums::correlation_),
-        appended_up_to(&Sums::most_kept_runs, &Sums::whitened_, &Sums::standardised_));
+        settings(&Sums::dimension_, &Sums::ends_),
+        added(&Sums::nees_, &Sums::stretch_, &Sums::against_run_, &Sums::component_, &Sums::bias_,
+              &Sums::correlation_, &Sums::groups_, &Sums::largest_, &Sums::exact_, &Sums::bets_),
+        appended(&Sums::fingerprints_, &Sums::numbers_),
+        appended_up_to(&Sums::most_kept_runs, &Sums::whitened_));
   }
 
  private:
-  struct Sum {
-    double squares = 0.0, terms = 0.0;
-    double terms_of_run = 0.0, squared_terms = 0.0;
-    void add(double error);
-    void end_run();
-    double ratio() const { return squares / terms; }
-    /// Number of runs with equal numbers of terms that give a mean of the same variance.
-    double runs() const { return terms * terms / squared_terms; }
+  /// A number of a run, over the whole drive and in each of its stretches, over runs.
+  struct OverDrive {
+    SummaryOf whole;
+    std::vector<SummaryOf> stretch;
     static constexpr auto parts() {
-      return std::tuple(added(&Sum::squares, &Sum::terms, &Sum::squared_terms));
+      return std::tuple(added(&OverDrive::whole, &OverDrive::stretch));
+    }
+  };
+  struct Maximum {
+    double value = 0.0;
+    void merge(const Maximum& next) { value = std::max(value, next.value); }
+    static constexpr auto members() { return std::tuple(&Maximum::value); }
+  };
+  /// The largest whitened error of all.
+  struct Largest {
+    double deviations = 0.0;
+    std::uint64_t run = 0, scan = 0, component = 0, samples = 0;
+    void merge(const Largest& next);
+    static constexpr auto members() {
+      return std::tuple(&Largest::deviations, &Largest::run, &Largest::scan, &Largest::component,
+                        &Largest::samples);
     }
   };
 
-  std::size_t first_scan(std::size_t stretch) const { return stretch * scans_ / stretches_; }
+  bool has_pairs() const { return dimension_ <= kMostComponentsInPairs; }
+  std::size_t stretches() const { return ends_.size(); }
   std::size_t most_kept_runs() const;
-  void add_squares(const WhitenedRun& run);
-  void add_means(const WhitenedRun& run);
-  bool are_most_samples_whole() const;
-  void add_variances(const ErrorNames& names, const DividedErrors& whitened,
-                     std::vector<MemberTest>& all) const;
-  void add_components(const ErrorNames& names, std::vector<MemberTest>& all) const;
-  void add_means(const ErrorNames& names, std::vector<MemberTest>& all) const;
+  std::size_t first_scan(std::size_t stretch) const {
+    return stretch == 0 ? 0 : ends_[stretch - 1];
+  }
+  void add_stretches(std::span<const double> nees);
+  void add_components(const WhitenedRun& run);
+  void add_correlations(const WhitenedRun& run);
+  void add_fingerprint(const WhitenedRun& run);
+  Member in_stretch(std::string name, std::size_t stretch, const ErrorNames& names) const;
+  void add_stretch_tests(const ErrorNames& names, std::vector<MemberTest>& all) const;
+  template <class Test>
+  void add_tests(const OverDrive& number, const std::string& name, const ErrorNames& names,
+                 Test test, std::vector<MemberTest>& all) const;
+  void add_correlation_tests(const ErrorNames& names, std::vector<MemberTest>& all) const;
+  void add_largest_test(const ErrorNames& names, std::vector<MemberTest>& all) const;
 
-  std::size_t dimension_ = 0, scans_ = 0, stretches_ = 0;
-  std::size_t runs_ = 0;        ///< with errors that are judged by their components
-  double whole_samples_ = 0.0;  ///< scans of runs with such errors
-  Sum size_;
-  std::vector<Sum> component_, stretch_;
+  std::size_t dimension_ = 0;
+  std::vector<std::size_t> ends_;  ///< {stretch} behind its last scan
   SummedError nees_;
-  std::vector<SummaryOf> bias_, correlation_;  ///< of the means of runs
-  ErrorsOfRuns whitened_, standardised_;       ///< of the first runs
+  std::vector<SummaryOf> stretch_;           ///< {stretch} ratio of a run
+  std::vector<SummaryOf> against_run_;       ///< {stretch} less the ratio of the whole run
+  std::vector<OverDrive> component_, bias_;  ///< {component}
+  std::vector<OverDrive> correlation_;       ///< {pair of components}
+  RunGroups groups_;
+  std::vector<std::vector<Bets>> bets_;  ///< on the size, on each component, on each stretch
+  Largest largest_;
+  std::vector<Maximum> exact_;  ///< {component} of errors where the deviation is 0
+  std::vector<std::uint64_t> fingerprints_, numbers_;  ///< {run} of its errors; the run's number
+  ErrorsOfRuns whitened_;                              ///< of the first runs
 };
 
 }  // namespace montecarta::analysis

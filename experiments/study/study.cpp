@@ -30,15 +30,16 @@ const Score* score_called(const std::string& name, const std::string& place) {
                       place + ": until = " + name + " < ... (runs have no number of that name)");
 }
 
-/// Returns whether the verdict of a cell is known after `runs` runs. "Consistent" needs
-/// `least_runs`, because an early stop would miss rare divergence.
+/// Returns whether the verdict of a cell is known after `runs` runs: it is refused, or consistent.
+/// "Consistent" needs `least_runs`, because an early stop would miss rare divergence. A file with a
+/// part of the runs decides by bets alone, which need not know of the other parts.
 bool is_verdict_known(const ResultFile& file, std::size_t cell, std::uint64_t runs,
                       std::uint64_t least_runs, const Parallel& parallel) {
   const CellAnalysis found =
       analyze_cell(file, file.cells().at(cell), Until::kLevel, runs, parallel);
-  const analysis::Answer answer = found.verdict.answer;
-  if (answer == analysis::Answer::consistent) return runs >= least_runs;
-  return answer != analysis::Answer::undecided && answer != analysis::Answer::untested;
+  if (file.runs().size() < file.study_runs()) return found.verdict.refused_by_bets.has_value();
+  if (found.verdict.answer == analysis::Answer::consistent) return runs >= least_runs;
+  return found.verdict.is_refused;
 }
 
 /// The number in "verdict, 100 runs"; nullopt if the text is malformed.

@@ -221,6 +221,7 @@ TEST(OwnDrives, HaveNoMeanOverTime) {
   const std::vector<double> scans = {1.0, 2.0}, others = {0.7, 1.4};
   RunCriteria criteria = criteria_of_scans(scans);
   MeasuredRun run;
+  run.times = scans;
   run.rows.ess = run.rows.nis = {2.0, 4.0};
   run.rows.nis_dof = {2, 2};
   const auto analysed = [&] {

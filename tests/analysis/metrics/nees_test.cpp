@@ -83,12 +83,34 @@ TEST(Nees, IsJudgedInTheRangeOfASingularCovariance) {
 }
 
 TEST(Nees, IsLargestWhereTheCovarianceExcludesTheError) {
-  const Eigen::Matrix3d no_heading = Eigen::Vector3d(4.0, 1.0, 0.0).asDiagonal();
-  EXPECT_EQ(nees<3>({2.0, 1.0, 1e-3}, no_heading).value, kLargestNees);
-  EXPECT_EQ(nees<3>({1.0, 0.0, 0.0}, Eigen::Matrix3d::Zero()).value, kLargestNees);
   const Eigen::Vector3d forward(1.0, 2.0, 0.1);
   EXPECT_EQ(nees<3>({-20.0, 20.0, 0.0}, forward * forward.transpose()).value, kLargestNees);
   EXPECT_EQ(nees<3>({1e200, 0.0, 0.0}, Eigen::Matrix3d::Identity()).value, kLargestNees);
+}
+
+// A component that is claimed to be exact has no NEES; its error is reported beside it.
+TEST(Nees, LeavesOutComponentsThatAreKnownExactly) {
+  const Eigen::Matrix3d no_heading = Eigen::Vector3d(4.0, 1.0, 0.0).asDiagonal();
+  EXPECT_NEAR(nees<3>({2.0, 1.0, 1e-3}, no_heading).value, 2.0, 1e-12);
+  EXPECT_EQ(nees<3>({1.0, 0.0, 0.0}, Eigen::Matrix3d::Zero()).rank, 0);
+  std::array<double, 3> errors = {0.0, 0.0, 0.0};
+  add_errors_of_exact(Eigen::Vector3d(2.0, 1.0, -1e-3), no_heading, least_pose_deviation(), errors);
+  add_errors_of_exact(Eigen::Vector3d(2.0, 1.0, 1e-10), no_heading, least_pose_deviation(), errors);
+  EXPECT_THAT(errors, ElementsAre(0.0, 0.0, 1e-3));
+  WhitenedPose pose;
+  whiten_pose({2.0, 1.0, 1e-3}, no_heading, pose);
+  EXPECT_EQ(pose.rank, 2);
+  EXPECT_TRUE(std::isnan(pose.standardised(2)));
+}
+
+// The correlation of two components may be exact while each has its own deviation.
+TEST(Nees, JudgesComponentsOfASingularCovariance) {
+  const Eigen::Vector3d forward(1.0, 2.0, 0.1);
+  WhitenedPose pose;
+  whiten_pose({2.0, 4.0, 0.1}, forward * forward.transpose(), pose);
+  EXPECT_EQ(pose.rank, 0);
+  EXPECT_NEAR(pose.standardised(0), 2.0, 1e-12);
+  EXPECT_NEAR(pose.standardised(2), 1.0, 1e-12);
 }
 
 TEST(Nees, SaysNothingOfAnErrorThatIsKnownToBeZero) {

@@ -46,10 +46,10 @@ TEST(NeesBounds, EqualTheGoldenValuesAndRefuseWhatIsNoTest) {
 }
 
 // Where runs are many all is normal: the average has a deviation of sqrt(2 / (3 x 100 N)), one of
-// seven families leaves 2.69 of it on either side, and 90 % is 1.2816 of them.
+// eleven families leaves 2.84 of it on either side, and 90 % is 1.2816 of them.
 TEST(NeesPlan, IsTheNormalLawWhereRunsAreMany) {
   const NeesPlan plan({.dimension = 3, .scans = 100});
-  const double to_find = std::pow((2.69 + 1.2816) / std::log(1.02), 2) * 2.0 / 300.0;
+  const double to_find = std::pow((2.84 + 1.2816) / std::log(1.02), 2) * 2.0 / 300.0;
   EXPECT_NEAR(static_cast<double>(plan.runs_to_find(1.02, 0.9)) / to_find, 1.0, 0.06);
 }
 

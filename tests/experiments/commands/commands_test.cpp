@@ -177,8 +177,8 @@ TEST_F(Commands, BoundsAreExactAndPlanSaysHowManyRuns) {
   EXPECT_THAT(call({"bounds", "--runs", "30", "--dim", "3"}).out, testing::StartsWith("[2.188"));
   expect_wrong({"bounds", "--runs", "30"}, "--dim D is missing");
   const std::string out = call({"plan", "--dim", "3", "--ratio", "1.2", "--scans", "100"}).out;
-  EXPECT_THAT(out, testing::ContainsRegex("constant +314 +3686\n"));
-  EXPECT_THAT(out, testing::ContainsRegex("100 independent scans +20 +124\n"));
+  EXPECT_THAT(out, testing::ContainsRegex("constant +339 +3688\n"));
+  EXPECT_THAT(out, testing::ContainsRegex("100 independent scans +7 +124\n"));
   EXPECT_THAT(out, HasSubstr("Neighbouring scans are correlated"));
   expect_wrong({"plan", "--dim", "3", "--ratio", "1.2", "--within", "1"}, "--within");
 }

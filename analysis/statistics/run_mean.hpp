@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/statistics/nees_bounds.hpp"
+#include "analysis/statistics/spread.hpp"
+
+namespace montecarta::analysis {
+
+/// The expectation of a number that every run has, judged by the runs themselves: Student's t with
+/// Hall's correction for skewness (P. Hall: On the removal of skewness by transformation, JRSS B
+/// 54, 1992; STATISTICS 5). Runs are independent; nothing is assumed about the errors within a run.
+class RunMean {
+ public:
+  /// Of a mean of squared errors by what is claimed, which is skewed to the right at least as much
+  /// as the gamma distribution of its mean and deviation. `common_skewness` is that of all scans
+  /// together, where the number is one of a scan.
+  static RunMean of_ratio(const Summary& runs, double common_skewness = 0.0);
+  /// Of a mean of products, which may be skewed to either side.
+  static RunMean of_product(const Summary& runs);
+  /// Of a number with a symmetric distribution, by Student's t as it is.
+  static RunMean of_symmetric(const Summary& runs);
+
+  double mean() const { return runs_.mean; }
+  /// The law of the same number in units of `unit`, above zero.
+  RunMean in_units_of(double unit) const;
+  /// Two-sided p-value of the expectation `expected`; 1 of fewer than three runs. A ratio is also
+  /// rejected if it is so small that even a ratio that is kFarBelow times as large would be, by the
+  /// law of one Gaussian error that never changes within a run.
+  double p_value(double expected) const;
+  static constexpr double kFarBelow = 4.0;
+  /// One-sided p-value against an expectation of 0 or less.
+  double p_value_above_zero() const;
+  /// Interval that holds the expectation with probability `level`. An end is infinite where the
+  /// runs exclude nothing.
+  Interval interval(double level) const;
+
+ private:
+  RunMean(const Summary& runs, double above, double below, bool is_ratio)
+      : runs_(runs), skewness_above_(above), skewness_below_(below), is_ratio_(is_ratio) {}
+  /// A variable that has Student's distribution if `expected` is right.
+  double score(double expected) const;
+  /// The expectation that has this score.
+  double expectation_at(double score) const;
+
+  Summary runs_;
+  double skewness_above_, skewness_below_;  ///< of a run, for a mean above and below the expected
+  bool is_ratio_;
+};
+
+}  // namespace montecarta::analysis
