@@ -65,6 +65,20 @@ struct Innovations {
 std::string whiteness_in_words(Whiteness whiteness, Answer answer);
 std::string whiteness_in_words(const Innovations& found);
 
+/// The run with the largest innovation.
+struct LargestRun {
+  double deviate = 0.0;  ///< of that innovation: standard normal if the filter is consistent
+  std::uint64_t run = 0;
+  std::uint64_t scan = 0;
+  double time = 0.0;  ///< [s] of the scan
+  std::vector<double> nis;
+  std::vector<std::uint32_t> dof;
+  static constexpr auto members() {
+    return std::tuple(&LargestRun::deviate, &LargestRun::run, &LargestRun::scan, &LargestRun::time,
+                      &LargestRun::nis, &LargestRun::dof);
+  }
+};
+
 /// Adds up the NIS over runs.
 class InnovationSums {
  public:
@@ -114,20 +128,6 @@ class InnovationSums {
     /// {scan} of the run at hand, the last one first: deviations, and 1 where there is one.
     std::vector<double> deviations_, is_there_;
   };
-  /// The run with the largest innovation.
-  struct LargestRun {
-    double deviate = 0.0;  ///< of that innovation: standard normal if the filter is consistent
-    std::uint64_t run = 0;
-    std::uint64_t scan = 0;
-    double time = 0.0;  ///< [s] of the scan
-    std::vector<double> nis;
-    std::vector<std::uint32_t> dof;
-    static constexpr auto members() {
-      return std::tuple(&LargestRun::deviate, &LargestRun::run, &LargestRun::scan,
-                        &LargestRun::time, &LargestRun::nis, &LargestRun::dof);
-    }
-  };
-
   void merge(InnovationSums& next);
 
   Totals others_;                      ///< of all runs but that one

@@ -6,6 +6,7 @@
 #include "analysis/metrics/imported_estimates.hpp"
 #include "analysis/statistics/sampler_scale.hpp"
 #include "analysis/statistics/spread.hpp"
+#include "analysis/verdict/interim_analysis.hpp"
 #include "analysis/verdict/verdict.hpp"
 #include "engine/core/pose.hpp"
 #include "engine/errors.hpp"
@@ -265,7 +266,8 @@ void RunMetrics::correct_and_whiten(const RunRows& rows, std::size_t particles, 
       if (is_drawn(rows, s)) scales = scales_of(draws_at(rows, particles, s));
       correct_spread(s, scales);
     }
-    const bool is_known = leading->rank[0][s] == 0;  // exactly, by all of its components
+    // Known exactly, by all of its components. The spread of drawn poses is no such claim.
+    const bool is_known = leading->rank[0][s] == 0 && leading != &corrected;
     if (std::isnan(leading->value[0][s]) && !is_known) continue;
     if (rows.error.components() == 0) {
       whiten_pose(rows, s, scales, frame);

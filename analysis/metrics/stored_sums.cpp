@@ -89,10 +89,9 @@ double bytes_of_sums(std::uint64_t runs, std::size_t scans) {
   // These are the scores that apply to the run, a word each, and what verdict, NEES and lineages
   // keep of it.
   constexpr double kWordsOfRun = 40.0, kWordsOfScan = 48.0;
-  constexpr double kKeptErrors = 256.0 * 6.0;  // of a pose, in the first group
   const auto n = static_cast<double>(runs), s = static_cast<double>(scans);
   const double groups = std::ceil(n / static_cast<double>(kRunsOfAGroup));
-  return 8.0 * (kWordsOfRun * n + (kWordsOfScan * groups + kKeptErrors) * s);
+  return 8.0 * (kWordsOfRun * n + kWordsOfScan * groups * s);
 }
 
 std::vector<NewGroup> sums_to_store(const ResultFile& rows, const Parallel& parallel) {

@@ -9,6 +9,7 @@
 #include "analysis/output/number_text.hpp"
 #include "analysis/statistics/sampler_scale.hpp"
 #include "analysis/statistics/spread.hpp"
+#include "analysis/verdict/interim_analysis.hpp"
 #include "engine/numbers/angle.hpp"
 
 #include <algorithm>
@@ -124,31 +125,19 @@ class VerdictOverRuns final : public MergedSums<VerdictOverRuns> {
     cell.verdict.level = level;
     cell.verdict.within = criteria_->within;
     if (!sums_) return;
-    const ErrorNames names{criteria_->components, criteria_->times};
-    cell.verdict = judge(sums_->families(level, names), level, criteria_->within, cell.complete,
-                         sums_->beside_tests(names));
-    if (criteria_->looks.size() > 1) judge_interim(ended, names, cell.verdict);
+    const InterimAnalysis analysis{.level = criteria_->level,
+                                   .within = criteria_->within,
+                                   .looks = criteria_->looks,
+                                   .share_of_runs = criteria_->share_of_runs};
+    cell.verdict =
+        judge(*sums_, {criteria_->components, criteria_->times}, analysis, ended, cell.complete);
     const NeesSeries& series = cell.nees.front().series;
     cell.verdict.samples = series.samples;
     cell.verdict.unusable = series.unusable;
-    const bool has_samples = !series.run_averages.empty();
-    if (cell.verdict.families.empty() && has_samples) cell.verdict.answer = Answer::undecided;
   }
   static constexpr auto parts() { return std::tuple(added(&VerdictOverRuns::sums_)); }
 
  private:
-  /// Of several analyses each refuses by intervals with half of the error that it may spend, and by
-  /// bets, which spend nothing, with the other half; of a part of the runs with its share of that.
-  void judge_interim(std::uint64_t ended, const ErrorNames& names, Verdict& verdict) const {
-    const double half = 0.5 * (1.0 - criteria_->level), within = criteria_->within;
-    const double level = level_of_look(1.0 - half, criteria_->looks, ended);
-    verdict.is_refused =
-        judge(sums_->families(level, names), level, within, verdict.runs, verdict.beside)
-            .is_refused;
-    const auto side = sums_->refused_by_bets(within, 1.0 - half * criteria_->share_of_runs);
-    if (side) refuse_by_bets(*side, verdict);
-  }
-
   const RunCriteria* criteria_;
   std::optional<WholeError> sums_;
 };

@@ -48,7 +48,7 @@ def errors_of(path, label):
 
 
 def law(values, above, below, is_ratio=False):
-    """(5.1), (5.2): p-value of an expectation and interval of a level, by one value of each run;
+    """(5.1): p-value of an expectation and interval of a level, by one value of each run;
     `above` and `below` are the skewnesses for a mean above and below the expectation."""
     n, mean, sd = len(values), values.mean(), values.std(ddof=1)
 
@@ -57,8 +57,10 @@ def law(values, above, below, is_ratio=False):
         g = above if x > 0 else below
         h = (max(0, 1 + g * x / 3) ** 3 - 1) / g + g / (6 * n) if abs(g) > 1e-6 else x
         p = 2 * stats.t.sf(abs(h) * np.sqrt(n), n - 1)
-        far = is_ratio and mean < expected
-        return min(p, 2 * stats.chi2.cdf(4 * n * mean / expected, n)) if far else p
+        if not is_ratio:
+            return p
+        squares = n * mean / expected
+        return min(p, 2 * stats.chi2.cdf(4 * squares, n), 2 * stats.chi2.sf(squares / 4, n))
 
     def end(score):
         g, z = above if score > 0 else below, score / np.sqrt(n)
@@ -72,7 +74,9 @@ def law(values, above, below, is_ratio=False):
         lower, upper = end(score), end(-score)
         if not is_ratio:
             return lower, upper
-        return max(0, lower), min(upper, 4 * n * mean / stats.chi2.ppf((1 - level) / 2, n))
+        tail, squares = (1 - level) / 2, n * mean
+        return (max(lower, squares / 4 / stats.chi2.isf(tail, n)),
+                min(upper, 4 * squares / stats.chi2.ppf(tail, n)))
 
     return p_value, interval
 
@@ -92,7 +96,7 @@ def ratio_member(family, name, values, common=0.0):
     return Member(family, name, values.mean(), p_value(1), interval)
 
 
-def zero_member(family, name, values, skewed=0.0):
+def zero_member(family, name, values, skewed=1.0):
     """A mean over runs that should be zero; `skewed` is 1 if it may be skewed to either side."""
     n = len(values)
     g, error = skewed * skewness(values) * (1 + 1 / np.sqrt(n)), skewed * np.sqrt(6 / n)
@@ -104,8 +108,9 @@ def scan_members(u, times):
     """Exactly chi-square if errors are Gaussian; by the runs as well, of which the wider counts."""
     runs, _, d = u.shape
     values = (u**2).mean(axis=2)
-    cubes = [skewness(v) * v.std(ddof=1) ** 3 for v in values.T]
-    common = np.mean(cubes) / np.mean(values.var(axis=0, ddof=1)) ** 1.5
+    relative = values / values.mean(axis=0)
+    cubes = [skewness(v) * v.std(ddof=1) ** 3 for v in relative.T]
+    common = np.mean(cubes) / np.mean(relative.var(axis=0, ddof=1)) ** 1.5
     for s, of_scan in enumerate(values.T):
         ratio, freedom = of_scan.mean(), runs * d
         exact = 2 * min(stats.chi2.cdf(freedom * ratio, freedom),
@@ -123,7 +128,7 @@ def scan_members(u, times):
 
 def excess_member(family, excess, unit, written):
     """A number that should be zero, of each group of eight runs; only too large a one counts."""
-    member = zero_member(family, family, np.array(excess))
+    member = zero_member(family, family, np.array(excess), skewed=0.0)
     unit = np.mean(unit)
     return member._replace(estimate=written(member.estimate / unit),
                            p=member.p / 2 if member.estimate > 0 else 1.0,
@@ -132,7 +137,7 @@ def excess_member(family, excess, unit, written):
 
 
 def group_members(u):
-    """(5.3), (5.4): groups of eight successive runs of a block of 64."""
+    """(5.2), (5.3): groups of eight successive runs of a block of 64."""
     ends = np.arange(9) * u.shape[1] // 8
     groups = [block[k:k + 8] for block in np.split(u, range(64, len(u), 64))
               for k in range(0, len(block) - 7, 8)]
@@ -142,9 +147,10 @@ def group_members(u):
     def parts(x):  # {stretch, component}
         return np.array([x[a:b].sum(axis=0) for a, b in zip(ends, ends[1:])])
 
-    def of_different(x, y):  # sum of products of parts with other stretch and other component
-        return (x.sum() * y.sum() - x.sum(axis=1) @ y.sum(axis=1) -
-                x.sum(axis=0) @ y.sum(axis=0) + (x * y).sum())
+    apart = np.abs(np.subtract.outer(range(8), range(8))) >= 3
+
+    def of_different(x, y):  # sum of products of parts far apart, of other components
+        return (np.outer(x.sum(axis=1), y.sum(axis=1)) - x @ y.T)[apart].sum()
 
     spread, unit, tails, square = [], [], [], []
     for g in groups:
@@ -167,8 +173,10 @@ def members_of(u, z, times):
     ends = np.arange(9) * scans // 8 if scans >= 16 else [0]
     stretches = [(f" {times[a]:.3g} s to {times[b - 1]:.3g} s", slice(a, b))
                  for a, b in zip(ends, ends[1:])]
-    pairs = [(NAMES[a] + " and " + NAMES[b], u[..., a] * u[..., b] / ratio)
-             for a, b in combinations(range(d), 2)]
+    parts = [part for _, part in stretches] or [slice(0, scans)]
+    bias = np.array([u[:, part].mean(axis=(0, 1)) for part in parts])  # {stretch, component}
+    pairs = {NAMES[a] + " and " + NAMES[b]: (u[..., a] * u[..., b], bias[:, a] * bias[:, b])
+             for a, b in combinations(range(d), 2)}
     components = [(NAMES[k], z[..., k]) for k in range(d)]
 
     def over_drive(family, test, named):
@@ -176,8 +184,15 @@ def members_of(u, z, times):
         yield from (test(family + "_by_stretch", name + when, x[:, part].mean(axis=1))
                     for name, x in named for when, part in stretches)
 
-    def product(*arguments):
-        return zero_member(*arguments, skewed=1.0)
+    def correlations():
+        def product(family, name, x, of_biases):
+            return zero_member(family, name, (x.mean(axis=1) - of_biases) / ratio)
+
+        for name, (x, of_biases) in pairs.items():
+            yield product("correlation", name, x, of_biases.mean())
+        for name, (x, of_biases) in pairs.items():
+            for (when, part), of_bias in zip(stretches, of_biases):
+                yield product("correlation_by_stretch", name + when, x[:, part], of_bias)
 
     squares = [(name, x**2) for name, x in components]
     yield ratio_member("size", "all", (u**2).mean(axis=(1, 2)))
@@ -188,10 +203,13 @@ def members_of(u, z, times):
     yield from by_component[d:]
     yield from scan_members(u, times)
     yield from over_drive("bias", zero_member, components)
-    yield from over_drive("correlation", product, pairs)
+    yield from correlations()
     yield from group_members(u)
-    largest = np.abs(u).max()
-    p = min(1, 2 * u.size * stats.norm.sf(largest / np.sqrt(max(1, ratio))))
+    largest = np.abs(z).max()
+    _, scan, k = np.unravel_index(np.abs(z).argmax(), z.shape)
+    near = next(part for part in parts if part.stop > scan)
+    of_place = max(1, np.mean(z[:, near, k] ** 2))
+    p = min(1, 2 * z.size * stats.norm.sf(largest / np.sqrt(of_place)))
     yield Member("tails", "largest error", largest, p, lambda level: (np.nan, np.nan))
 
 

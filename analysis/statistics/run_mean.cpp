@@ -40,9 +40,9 @@ RunMean RunMean::of_product(const Summary& runs) {
 
 RunMean RunMean::of_symmetric(const Summary& runs) { return {runs, 0.0, 0.0, false}; }
 
-RunMean RunMean::in_units_of(double unit) const {
+RunMean RunMean::in_units_of(double unit, double offset) const {
   RunMean scaled = *this;
-  scaled.runs_.mean /= unit;
+  scaled.runs_.mean = (scaled.runs_.mean - offset) / unit;
   scaled.runs_.sd /= unit;
   return scaled;
 }
@@ -76,8 +76,10 @@ double RunMean::p_value(double expected) const {
   if (runs_.n < kFewestRuns) return 1.0;
   const auto n = static_cast<double>(runs_.n);
   const double p = t_p_value(score(expected), n - 1.0);
-  if (!is_ratio_ || !(runs_.mean < expected)) return p;
-  return std::min(p, 2.0 * chi_squared_cdf(kFarBelow * n * runs_.mean / expected, n));
+  if (!is_ratio_) return p;
+  const double squares = n * runs_.mean / expected;
+  return std::min(
+      {p, 2.0 * chi_squared_cdf(kFar * squares, n), 2.0 * chi_squared_tail(squares / kFar, n)});
 }
 
 double RunMean::p_value_above_zero() const { return runs_.mean > 0.0 ? 0.5 * p_value(0.0) : 1.0; }
@@ -89,9 +91,9 @@ Interval RunMean::interval(double level) const {
   const double score = t_score(level, n - 1.0);
   Interval found{expectation_at(score), expectation_at(-score)};
   if (!is_ratio_) return found;
-  const double least = chi_squared_quantile(0.5 * (1.0 - level), n);
-  found.lower = std::max(0.0, found.lower);
-  found.upper = std::min(found.upper, kFarBelow * n * runs_.mean / least);
+  const double tail = 0.5 * (1.0 - level), squares = n * runs_.mean;
+  found.lower = std::max(found.lower, squares / kFar / chi_squared_beyond(tail, n));
+  found.upper = std::min(found.upper, kFar * squares / chi_squared_quantile(tail, n));
   return found;
 }
 

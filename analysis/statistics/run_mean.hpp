@@ -21,13 +21,13 @@ class RunMean {
   static RunMean of_symmetric(const Summary& runs);
 
   double mean() const { return runs_.mean; }
-  /// The law of the same number in units of `unit`, above zero.
-  RunMean in_units_of(double unit) const;
+  /// The law of the same number less `offset`, in units of `unit`, which is above zero.
+  RunMean in_units_of(double unit, double offset = 0.0) const;
   /// Two-sided p-value of the expectation `expected`; 1 of fewer than three runs. A ratio is also
-  /// rejected if it is so small that even a ratio that is kFarBelow times as large would be, by the
-  /// law of one Gaussian error that never changes within a run.
+  /// rejected if even one that is kFar times nearer to the expected one would be, by the law of one
+  /// Gaussian error that never changes within a run.
   double p_value(double expected) const;
-  static constexpr double kFarBelow = 4.0;
+  static constexpr double kFar = 4.0;
   /// One-sided p-value against an expectation of 0 or less.
   double p_value_above_zero() const;
   /// Interval that holds the expectation with probability `level`. An end is infinite where the

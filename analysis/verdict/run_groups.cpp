@@ -65,16 +65,16 @@ std::vector<double> RunGroups::products(std::size_t i, std::size_t j) const {
   return parts;
 }
 
-// Errors with heavy tails have large squares together at one scan, or in one component at scans
-// that are near each other. Scales of a run are common to all of it, so that only parts count that
-// differ in both: in component and stretch, or, of one component, stretches half a drive apart.
+// Errors with heavy tails have large squares together at scans that are near each other. Scales of
+// a run are common to all of it, so that only parts count that are three eighths of the drive
+// apart, of different components if there are several.
 double RunGroups::of_different_parts(std::span<const double> x, std::span<const double> y) const {
   const std::size_t stretches = ends_.size();
   double sum = 0.0;
   for (std::size_t s = 0; s < stretches; ++s) {
     for (std::size_t t = 0; t < stretches; ++t) {
       const std::size_t apart = s < t ? t - s : s - t;
-      if (apart == 0 || (dimension_ == 1 && 2 * apart < stretches)) continue;
+      if (8 * apart < 3 * stretches) continue;
       double all_x = 0.0, all_y = 0.0, own = 0.0;
       for (std::size_t k = 0; k < dimension_; ++k) {
         const double of_x = x[s * dimension_ + k], of_y = y[t * dimension_ + k];

@@ -60,11 +60,16 @@ std::string from_to(double lower, double upper) {
   return from == to ? from : from + " to " + to;
 }
 
+/// The interval at which a member is shown; of all together if none is known.
+const Interval& shown_interval(const Member& member) {
+  return std::isnan(member.shown.lower) ? member.simultaneous : member.shown;
+}
+
 /// "1.28 to 2.25", larger than 1 in both directions. The size has an interval of its own; others
 /// were chosen among many.
 std::string factor_text(const Shown& shown, Direction direction, bool is_slight = false) {
   const bool is_alone = shown.test->family == Family::size || is_slight;
-  Interval ratio = is_alone ? shown.member->interval : shown.member->simultaneous;
+  Interval ratio = is_alone ? shown.member->interval : shown_interval(*shown.member);
   if (direction == Direction::below) ratio = {1.0 / ratio.upper, 1.0 / ratio.lower};
   return from_to(std::max(ratio.lower, 1.0), ratio.upper);
 }
@@ -77,7 +82,7 @@ std::string in_component(const std::string& name) {
 /// " in heading", " from 12 s to 24 s", " in heading from 12 s to 24 s", " at 3 s"; empty for the
 /// size.
 std::string place_of(const Member& member, bool is_of_component) {
-  const std::string name = is_of_component ? " " + in_component(member.name) : "";
+  std::string name = is_of_component ? " " + in_component(member.name) : "";
   if (std::isnan(member.from)) return name;
   Member time = member;
   time.name.clear();
@@ -170,12 +175,12 @@ const Member* strongest_shown(const FamilyTest& test, bool is_negative) {
 }
 
 std::string bias_of(const Member& member) {
-  return "a bias" + place_of(member, true) + " of " + signed_text(member.simultaneous) +
+  return "a bias" + place_of(member, true) + " of " + signed_text(shown_interval(member)) +
          " standard deviations";
 }
 
 std::string correlation_of(const Member& member) {
-  return "an unreported correlation of " + signed_text(member.simultaneous) + " between " +
+  return "an unreported correlation of " + signed_text(shown_interval(member)) + " between " +
          member.name + place_of(member, false);
 }
 
@@ -229,12 +234,14 @@ std::string joined(const std::vector<std::string>& phrases) {
   return text;
 }
 
-/// "bets on its runs show that squared errors are more than 1.1 times what it claims"; empty if
-/// bets show nothing on this side.
-std::string bet_words(const Verdict& verdict, Side side) {
-  if (verdict.refused_by_bets != side) return "";
-  return "bets on its runs show that squared errors are more than " + exact_text(verdict.within) +
-         (side == Side::above ? " times what it claims" : " times smaller than it claims");
+/// Empty if bets refuse nothing. They do not say which ratio is off.
+std::string bet_words(const Verdict& verdict) {
+  if (!verdict.refused_by_bets) return "";
+  const bool is_above = verdict.refused_by_bets == Side::above;
+  return "bets on its runs show that squared errors, of all or of a component or of an eighth of "
+         "the drive, are more than " +
+         exact_text(verdict.within) +
+         (is_above ? " times what it claims" : " times smaller than it claims");
 }
 
 /// "on average its squared errors are 1.67 times what it claims (95 %: 1.28 to 2.25), shown from
@@ -242,7 +249,7 @@ std::string bet_words(const Verdict& verdict, Side side) {
 std::string ratio_sentence(const Verdict& verdict, Direction direction) {
   const auto shown = leading(verdict, direction);
   const bool is_above = direction == Direction::above;
-  if (!shown) return bet_words(verdict, is_above ? Side::above : Side::below);
+  if (!shown) return "";
   const std::string factor = factor_text(*shown, direction);
   const std::string than = is_above ? " times what it claims" : " times smaller than it claims";
   const std::string place = place_of(*shown);
@@ -265,6 +272,7 @@ std::string shown_sentence(const Verdict& verdict) {
                                       is_one_direction ? spread : above,
                                       is_one_direction ? "" : below};
   std::ranges::move(means_words(verdict), std::back_inserter(phrases));
+  phrases.push_back(bet_words(verdict));
   phrases.push_back(tail_words(verdict));
   return joined(phrases);
 }
@@ -308,16 +316,16 @@ std::string slight_words(const Verdict& verdict) {
   std::string words;
   for (const Direction direction : kDirections) {
     const auto shown = leading(verdict, direction);
-    if (!shown || shown->test->family == Family::scan) continue;
+    if (!shown) continue;
     const bool is_above = direction == Direction::above;
     words += std::string(", slightly ") + (is_above ? "optimistic" : "conservative") +
              place_of(*shown) + " (" + factor_text(*shown, direction, true) + ")";
   }
   std::vector<std::string> phrases = means_words(verdict);
   phrases.insert(phrases.begin(), spread_words(verdict));
-  const std::string others = joined(phrases);
-  return others.empty() ? words
-                        : words + ", though " + (others.starts_with('a') ? "with " : "") + others;
+  std::erase(phrases, "");
+  if (phrases.empty()) return words;
+  return words + ", though " + (phrases.front().starts_with('a') ? "with " : "") + listed(phrases);
 }
 
 /// "3 of 300 runs failed, 20 of 9600 samples are unusable"; empty if there are none.
@@ -339,13 +347,19 @@ std::string within_words(const Verdict& verdict) {
   return "consistent within " + exact_text(verdict.within);
 }
 
-/// "about 130 more runs would show"; empty if it is not known.
+/// "about 130 more runs decide"
 std::string more_runs_words(const Verdict& verdict) {
   if (complete_runs(verdict) < kFewestRunsOfAPlan) {
     return "take at least " + std::to_string(kFewestRunsOfAPlan) + " runs";
   }
   if (!verdict.more_runs) return "many more runs decide";
   return "about " + std::to_string(*verdict.more_runs) + " more runs decide";
+}
+
+/// Of a deviation that is shown, but not to be beyond the margin.
+std::string open_words(const Verdict& verdict) {
+  return "it is not shown to be beyond the margin of " + exact_text(verdict.within) + ": " +
+         more_runs_words(verdict);
 }
 
 bool is_slight(const Verdict& verdict) {
@@ -369,11 +383,11 @@ std::string answer_words(const Verdict& verdict) {
 /// "in every component and in every eighth of the drive", as far as these were judged.
 std::string judged_parts(const Verdict& verdict) {
   const FamilyTest* bias = verdict.find(Family::bias);
-  if (bias == nullptr) return " on average; its components were not judged";
+  if (bias == nullptr) return ", on average; its components were not judged";
   const bool is_one = bias->members.size() == 1;
-  std::string parts = is_one ? "" : " in every component";
+  std::string parts = is_one ? "" : ", in every component";
   if (verdict.find(Family::stretch) != nullptr) {
-    parts += (is_one ? "" : " and") + std::string(" in every eighth of the drive");
+    parts += (is_one ? "," : " and") + std::string(" in every eighth of the drive");
   }
   const bool has_correlations = is_one || verdict.find(Family::correlation) != nullptr;
   return parts + (has_correlations ? "" : "; correlations were not judged");
@@ -381,7 +395,7 @@ std::string judged_parts(const Verdict& verdict) {
 
 std::string consistent_words(const Verdict& verdict) {
   const std::string tails = tail_words(verdict);
-  return within_words(verdict) + judged_parts(verdict) + slight_words(verdict) + "; " +
+  return within_words(verdict) + slight_words(verdict) + judged_parts(verdict) + "; " +
          (tails.empty() ? "events rarer than 1 in " + std::to_string(complete_runs(verdict) / 3) +
                               " runs are not excluded"
                         : tails);
@@ -402,10 +416,7 @@ std::string undecided_words(const Verdict& verdict) {
 /// What the tests say.
 std::string tested_words(const Verdict& verdict) {
   const std::string slightly = is_slight(verdict) ? "slightly " : "";
-  const std::string margin = exact_text(verdict.within);
-  const std::string open =
-      is_slight(verdict) ? "; " + more_runs_words(verdict) + " whether that is within " + margin
-                         : "";
+  const std::string open = is_slight(verdict) ? "; " + open_words(verdict) : "";
   switch (verdict.of_tests) {
     case Answer::consistent:
       return consistent_words(verdict);
@@ -439,21 +450,24 @@ std::string repeat_words(const Verdict& verdict) {
   const auto& [run, earlier] = verdict.beside.first_repeat;
   return "not tested: " + std::to_string(verdict.beside.repeated_runs) + " of " +
          std::to_string(complete_runs(verdict)) +
-         " runs have the errors of an earlier run, number by number (run " + std::to_string(run) +
+         (verdict.beside.repeated_runs == 1 ? " runs has" : " runs have") +
+         " the errors of an earlier run, number by number (run " + std::to_string(run) +
          " those of run " + std::to_string(earlier) + "), and runs must be independent";
 }
 
 std::string all_words(const Verdict& verdict, const std::string& by_tests) {
   if (verdict.beside.repeated_runs > 0) return repeat_words(verdict);
   if (verdict.beside.exact.empty()) return by_tests;
-  return "inconsistent: " + exact_words(verdict) + "; the other components are " + by_tests;
+  std::string of_exact = "inconsistent: " + exact_words(verdict);
+  if (verdict.of_tests == Answer::untested) return of_exact;
+  return of_exact + "; apart from that it is " + by_tests;
 }
 
 }  // namespace
 
 std::string in_words(const Verdict& verdict) {
   const std::string exceptions = exceptions_of(verdict);
-  const std::string words = all_words(verdict, answer_words(verdict));
+  std::string words = all_words(verdict, answer_words(verdict));
   if (exceptions.empty()) return words;
   const bool is_good = verdict.answer == Answer::consistent;
   return words + (is_good ? " in what can be judged" : "") + " (" + exceptions + ")";

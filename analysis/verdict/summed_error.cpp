@@ -15,7 +15,7 @@ namespace {
 
 /// The law of a mean of so many squares of independent standard normal variables, for many means:
 /// their number is nearly always the same.
-class SquaresLaw {
+class ChiSquareLaw {
  public:
   /// Two-sided p-value of a mean.
   static double p_value(double freedom, double mean) {
@@ -39,9 +39,9 @@ class SquaresLaw {
 };
 
 MemberTest exact_test(Family family, Member member, double freedom,
-                      const std::shared_ptr<SquaresLaw>& law) {
+                      const std::shared_ptr<ChiSquareLaw>& law) {
   const double ratio = member.estimate;
-  member.p = SquaresLaw::p_value(freedom, ratio);
+  member.p = ChiSquareLaw::p_value(freedom, ratio);
   return {family, std::move(member),
           [law, freedom, ratio](double level) { return law->interval(freedom, ratio, level); }};
 }
@@ -91,8 +91,9 @@ double SummedError::common_skewness() const {
   for (const Scan& scan : scans_) {
     const Summary runs = scan.runs.result();
     if (!(runs.sd > 0.0) || std::isnan(runs.skewness)) continue;
-    cubes += runs.skewness * runs.sd * runs.sd * runs.sd;
-    squares += runs.sd * runs.sd;
+    const double deviation = runs.sd / runs.mean;  // so that scans of other sizes count alike
+    cubes += runs.skewness * deviation * deviation * deviation;
+    squares += deviation * deviation;
     n += 1.0;
   }
   return n > 0.0 ? cubes / n / std::pow(squares / n, 1.5) : 0.0;
@@ -100,7 +101,7 @@ double SummedError::common_skewness() const {
 
 std::vector<MemberTest> SummedError::scan_tests(std::span<const double> times) const {
   std::vector<MemberTest> all;
-  const auto law = std::make_shared<SquaresLaw>();
+  const auto law = std::make_shared<ChiSquareLaw>();
   const double skewness = common_skewness();
   for (std::size_t s = 0; s < scans_.size(); ++s) {
     const Scan& scan = scans_[s];
@@ -126,7 +127,7 @@ std::vector<FamilyTest> SummedError::families(double level, std::span<const doub
 std::vector<FamilyTest> SummedError::white_families(double level,
                                                     std::span<const double> times) const {
   std::vector<MemberTest> all = scan_tests(times);
-  const auto law = std::make_shared<SquaresLaw>();
+  const auto law = std::make_shared<ChiSquareLaw>();
   const auto add_sum = [&](Family family, Member member, std::size_t first, std::size_t end) {
     double nees = 0.0, dimensions = 0.0;
     for (std::size_t s = first; s < end; ++s) {

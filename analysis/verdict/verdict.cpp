@@ -63,8 +63,8 @@ std::string key_of(Family family) {
 std::string name_of(const Member& member) {
   if (std::isnan(member.from)) return member.name;
   const bool is_scan = member.from == member.to;
-  const std::string time = is_scan ? "at " + fixed_seconds(member.from)
-                                   : readable(member.from) + " s to " + readable(member.to) + " s";
+  std::string time = is_scan ? "at " + fixed_seconds(member.from)
+                             : readable(member.from) + " s to " + readable(member.to) + " s";
   if (member.name.empty()) return time;
   return member.name + (is_scan ? " " : " from ") + time;
 }
@@ -110,23 +110,14 @@ std::vector<FamilyTest> judge_tests(std::vector<MemberTest> tests, double level)
     }
   }
   judge_together(families, level);
+  next = tests.begin();
+  for (FamilyTest& family : families) {
+    for (Member& member : family.members) {
+      if (family.is_shown(member)) member.shown = next->interval(1.0 - family.member_limit);
+      ++next;
+    }
+  }
   return families;
-}
-
-double spent(double alpha, double information) {
-  if (!(information > 0.0)) return 0.0;
-  return 2.0 * normal_cdf(normal_quantile(0.5 * alpha) / std::sqrt(information));
-}
-
-double level_of_look(double level, std::span<const std::uint64_t> looks, std::uint64_t runs) {
-  if (looks.size() < 2) return level;
-  const auto look = std::min(std::ranges::lower_bound(looks, runs), looks.end() - 1);
-  const auto information = [&](std::uint64_t n) {
-    return static_cast<double>(n) / static_cast<double>(looks.back());
-  };
-  constexpr double kLeastSpent = 1e-10;  // a level nearer to 1 has no exact complement
-  const double before = look == looks.begin() ? 0.0 : spent(1.0 - level, information(*(look - 1)));
-  return 1.0 - std::max(spent(1.0 - level, information(*look)) - before, kLeastSpent);
 }
 
 namespace {
@@ -225,37 +216,67 @@ bool is_refused(const Verdict& verdict) {
 /// A scale on which intervals are symmetric.
 double on_scale(Family family, double value) { return is_ratio(family) ? std::log(value) : value; }
 
-/// Factor by which the number of runs must grow until the interval of a member lies within the
-/// margin, if the true value is where the estimate is, less the part of its distance from the right
-/// one that chance explains.
-double growth_until_inside(Family family, const Member& member, double within) {
-  const Interval margin = margin_of(family, within);
-  if (claim_of(family) != Claim::is_inside || is_inside(member.interval, margin)) return 1.0;
-  const double half =
-      0.5 * (on_scale(family, member.interval.upper) - on_scale(family, member.interval.lower));
-  const double distance = std::abs(on_scale(family, member.estimate));
-  const double room = on_scale(family, margin.upper) - std::max(0.0, distance - half);
-  constexpr double kWithChance = 1.5;  // of the half interval: it, and the estimate's own error
-  return room > 0.0 ? std::pow(kWithChance * half / room, 2) : kNaN;
+/// The shorter way from the estimate to an end of an interval: what skewness adds to the longer one
+/// goes away faster than the rest with more runs.
+double half_of(Family family, const Member& member, const Interval& interval) {
+  const double estimate = on_scale(family, member.estimate);
+  return std::min(on_scale(family, interval.upper) - estimate,
+                  estimate - on_scale(family, interval.lower));
 }
 
-/// The same until a member is shown to be beyond the margin; NaN if its estimate is not.
-double growth_until_outside(Family family, const Member& member, double within) {
+/// Factor by which the number of runs must grow until the interval of a member lies within the
+/// margin, if the true value is where the estimate is, less the part of its distance from the right
+/// one that chance explains. `chance` is that of the farthest of all members, in half intervals.
+double growth_until_inside(Family family, const Member& member, double within, double chance) {
+  const Interval margin = margin_of(family, within);
+  if (claim_of(family) != Claim::is_inside || is_inside(member.interval, margin)) return 1.0;
+  const double half = half_of(family, member, member.interval);
+  const double distance = std::abs(on_scale(family, member.estimate));
+  constexpr double kBeyondChance = 1.5;  // a deviation that chance hardly explains
+  const double room =
+      on_scale(family, margin.upper) - std::max(0.0, distance - kBeyondChance * chance * half);
+  return room > 0.0 ? std::pow((1.0 + chance) * half / room, 2) : kNaN;
+}
+
+/// The same until a member is shown to be beyond the margin; NaN if chance explains that its
+/// estimate is.
+double growth_until_outside(Family family, const Member& member, double within, double chance) {
   if (claim_of(family) == Claim::none) return kNaN;
-  const double beyond = std::abs(on_scale(family, member.estimate)) -
+  const double own = half_of(family, member, member.interval);
+  const double beyond = std::abs(on_scale(family, member.estimate)) - chance * own -
                         on_scale(family, margin_of(family, within).upper);
-  const double half = 0.5 * (on_scale(family, member.simultaneous.upper) -
-                             on_scale(family, member.simultaneous.lower));
+  const double half = half_of(family, member, member.simultaneous);
   return beyond > 0.0 ? std::pow(half / beyond, 2) : kNaN;
+}
+
+/// The deviation that the farthest of so many estimates exceeds in half of studies, in halves of
+/// their intervals.
+double chance_of_farthest(double members, double level) {
+  const double inside = std::pow(0.5, 1.0 / members);  // probability of each
+  return normal_quantile(0.5 + 0.5 * inside) / normal_quantile(0.5 + 0.5 * level);
+}
+
+/// Number of members that must lie inside their margins.
+double members_inside(const Verdict& verdict) {
+  double members = 0.0;
+  for (const FamilyTest& test : verdict.families) {
+    if (claim_of(test.family) == Claim::is_inside)
+      members += static_cast<double>(test.members.size());
+  }
+  return members;
 }
 
 std::optional<std::uint64_t> more_runs_of(const Verdict& verdict, std::uint64_t runs) {
   double inside = 1.0, outside = kNaN;
+  const double chance = chance_of_farthest(members_inside(verdict), verdict.level);
   for (const FamilyTest& test : verdict.families) {
+    const double of_family =
+        chance_of_farthest(static_cast<double>(test.members.size()), verdict.level);
     for (const Member& member : test.members) {
-      const double growth = growth_until_inside(test.family, member, verdict.within);
+      const double growth = growth_until_inside(test.family, member, verdict.within, chance);
       inside = std::isnan(growth) ? growth : inside * std::max(1.0, growth / inside);
-      outside = std::fmin(outside, growth_until_outside(test.family, member, verdict.within));
+      outside =
+          std::fmin(outside, growth_until_outside(test.family, member, verdict.within, of_family));
     }
   }
   constexpr double kMost = 1e9, kLeastGrowth = 1.1;

@@ -86,7 +86,8 @@ struct Member {
   double estimate = kNaN;            ///< ratio, or number that should be zero
   Interval interval = {kNaN, kNaN};  ///< of this member alone
   Interval simultaneous = {kNaN, kNaN};  ///< all members of all families hold with the level
-  double p = kNaN;                       ///< two-sided, of this member alone
+  Interval shown = {kNaN, kNaN};  ///< at the level at which it is shown to be off; NaN if it is not
+  double p = kNaN;                ///< two-sided, of this member alone
 };
 
 /// "heading", "12 s to 24 s", "at 12.4 s"
@@ -119,17 +120,6 @@ struct MemberTest {
 
 /// Families in the order of kFamilies, with intervals, judged together at `level`.
 std::vector<FamilyTest> judge_tests(std::vector<MemberTest> tests, double level);
-
-/// Share of the error probability `alpha` that interim analyses have spent when `information`, in
-/// [0, 1], of the runs are there: 2 - 2 Phi(z / sqrt(information)), which resembles the boundaries
-/// of O'Brien and Fleming (Lan and DeMets 1983).
-double spent(double alpha, double information);
-
-/// Level of the interim analysis of `runs` runs, where `looks` are the increasing numbers of runs
-/// of all interim analyses. Each has the error probability that is spent since the one before, so
-/// that together they reject with a probability of at most 1 - level, for any dependence between
-/// them. Between two looks it is the level of the next one. Without looks it is `level`.
-double level_of_look(double level, std::span<const std::uint64_t> looks, std::uint64_t runs);
 
 enum class Answer {
   untested,      ///< no covariance is stored, or no run is complete

@@ -26,24 +26,6 @@ std::vector<std::size_t> ends_of_stretches(std::size_t scans) {
   return ends;
 }
 
-/// A sum of numbers of one run, some of which are NaN.
-struct Mean {
-  double sum = 0.0, n = 0.0;
-  void add(double value) {
-    if (std::isnan(value)) return;
-    sum += value;
-    n += 1.0;
-  }
-  void add(const Mean& other) {
-    sum += other.sum;
-    n += other.n;
-  }
-  double mean() const { return sum / n; }  ///< NaN of nothing
-  void end_run(SummaryOf& runs) const {
-    if (n > 0.0) runs.add(mean());
-  }
-};
-
 /// Numbers of one run, {number}, in one stretch and in the whole drive.
 class Means {
  public:
@@ -64,8 +46,21 @@ class Means {
   }
 
  private:
-  std::vector<Mean> whole_, stretch_;
+  std::vector<MeanOfRun> whole_, stretch_;
 };
+
+/// {scan} NaN where there is nothing to sum.
+std::vector<double> sums_of(std::span<const MeanOfRun> ratios) {
+  std::vector<double> sums;
+  for (const MeanOfRun& ratio : ratios) sums.push_back(ratio.n > 0.0 ? ratio.sum : kNaN);
+  return sums;
+}
+
+std::vector<double> numbers_of(std::span<const MeanOfRun> ratios) {
+  std::vector<double> numbers;
+  for (const MeanOfRun& ratio : ratios) numbers.push_back(ratio.n);
+  return numbers;
+}
 
 /// The same family in single stretches.
 Family by_stretch(Family family) {
@@ -96,19 +91,22 @@ WholeError::WholeError(std::size_t dimension, std::size_t scans)
   if (stretches() > 1) number.stretch.resize(stretches());
   component_.assign(dimension, number);
   bias_ = component_;
-  if (has_pairs()) correlation_.assign(dimension * (dimension - 1) / 2, number);
+  if (!has_pairs()) return;
+  correlation_.assign(dimension * (dimension - 1) / 2, number);
+  whitened_mean_.assign(dimension, number);
 }
 
 void WholeError::add(const WhitenedRun& run, std::span<const double> nees) {
   expect(run.dimension == dimension_ && run.whitened.size() == ends_.back() * dimension_ &&
              run.standardised.size() == run.whitened.size(),
          "errors are {scan, component}");
-  nees_.add(nees, static_cast<double>(dimension_));
+  const std::vector<MeanOfRun> ratios = ratios_of(run, nees);
+  nees_.add(sums_of(ratios), numbers_of(ratios));
   for (std::size_t k = 0; k < run.errors_of_exact.size(); ++k) {
     exact_[k].merge({run.errors_of_exact[k]});
   }
   if (std::ranges::all_of(nees, [](double value) { return std::isnan(value); })) return;
-  add_stretches(nees);
+  add_stretches(ratios);
   add_components(run);
   add_fingerprint(run);
   if (std::ranges::all_of(run.whitened, [](double u) { return std::isnan(u); })) return;
@@ -117,25 +115,39 @@ void WholeError::add(const WhitenedRun& run, std::span<const double> nees) {
   if (!has_pairs() && whitened_.size() < most_kept_runs()) whitened_.push_back(run.whitened);
 }
 
+/// {scan} Sum and number of the squares of a run: of L^-1 e where there is one, so that components
+/// that are known exactly do not count, else of the NEES in the range of the covariance.
+std::vector<MeanOfRun> WholeError::ratios_of(const WhitenedRun& run,
+                                             std::span<const double> nees) const {
+  std::vector<MeanOfRun> ratios(nees.size());
+  for (std::size_t s = 0; s < nees.size(); ++s) {
+    if (std::isnan(nees[s])) continue;
+    for (std::size_t k = s * dimension_; k < (s + 1) * dimension_; ++k) {
+      ratios[s].add(run.whitened[k] * run.whitened[k]);
+    }
+    if (ratios[s].n == 0.0) ratios[s] = {.sum = nees[s], .n = static_cast<double>(dimension_)};
+  }
+  return ratios;
+}
+
 std::size_t WholeError::most_kept_runs() const {
   const std::size_t length = std::max<std::size_t>(ends_.back() * dimension_, 1);
   return std::clamp(kMostKeptErrors / length, kFewestKeptRuns, kMostKeptRuns);
 }
 
-void WholeError::add_stretches(std::span<const double> nees) {
-  std::vector<Mean> ratios(stretches());
-  Mean whole;
+void WholeError::add_stretches(std::span<const MeanOfRun> ratios) {
+  std::vector<MeanOfRun> of_stretch(stretches());
+  MeanOfRun whole;
   for (std::size_t k = 0; k < stretches(); ++k) {
-    for (std::size_t s = first_scan(k); s < ends_[k]; ++s) {
-      ratios[k].add(nees[s] / static_cast<double>(dimension_));
-    }
-    whole.add(ratios[k]);
+    for (std::size_t s = first_scan(k); s < ends_[k]; ++s) of_stretch[k].add(ratios[s]);
+    whole.add(of_stretch[k]);
   }
   bets_[0][0].add(whole.mean());
   for (std::size_t k = 0; k < stretches(); ++k) {
-    ratios[k].end_run(stretch_[k]);
-    if (stretches() > 1) bets_[2][k].add(ratios[k].mean());
-    if (ratios[k].n > 0.0) against_run_[k].add(ratios[k].mean() - whole.mean());
+    const double ratio = of_stretch[k].mean();
+    of_stretch[k].end_run(stretch_[k]);
+    if (stretches() > 1) bets_[2][k].add(ratio);
+    if (!std::isnan(ratio)) against_run_[k].add(ratio - whole.mean());
   }
 }
 
@@ -146,6 +158,7 @@ void WholeError::add_components(const WhitenedRun& run) {
     while (place < ends_[stretch] * dimension_) {
       for (std::size_t k = 0; k < dimension_; ++k, ++place) {
         const double z = run.standardised[place];
+        largest_.add(z, {.run = run.number, .scan = place / dimension_, .component = k});
         squares.add(k, z * z);
         means.add(k, z);
       }
@@ -159,28 +172,29 @@ void WholeError::add_components(const WhitenedRun& run) {
 }
 
 void WholeError::add_correlations(const WhitenedRun& run) {
-  Means products(correlation_.size());
+  Means products(correlation_.size()), means(whitened_mean_.size());
   for (std::size_t stretch = 0; stretch < stretches(); ++stretch) {
     for (std::size_t s = first_scan(stretch); s < ends_[stretch]; ++s) {
       const double* const u = run.whitened.data() + s * dimension_;
-      for (std::size_t a = 0; a < dimension_; ++a) {
-        const double deviations = std::abs(u[a]);
-        if (!std::isnan(deviations)) ++largest_.samples;
-        if (deviations > largest_.deviations) {
-          largest_.deviations = deviations;
-          largest_.run = run.number;
-          largest_.scan = s;
-          largest_.component = a;
-        }
-      }
       std::size_t pair = 0;
       for (std::size_t a = 0; has_pairs() && a < dimension_; ++a) {
+        means.add(a, u[a]);
         for (std::size_t b = a + 1; b < dimension_; ++b) products.add(pair++, u[a] * u[b]);
       }
     }
     products.end_stretch(stretch, correlation_);
+    means.end_stretch(stretch, whitened_mean_);
   }
   products.end_run(correlation_);
+  means.end_run(whitened_mean_);
+}
+
+void WholeError::Largest::add(double error, const Place& where) {
+  if (std::isnan(error)) return;
+  ++samples;
+  if (!(std::abs(error) > deviations)) return;
+  deviations = std::abs(error);
+  place = where;
 }
 
 void WholeError::Largest::merge(const Largest& next) {
@@ -225,26 +239,45 @@ void WholeError::add_tests(const OverDrive& number, const std::string& name,
                            const ErrorNames& names, Test test, std::vector<MemberTest>& all) const {
   const Summary whole = number.whole.result();
   if (whole.n < kFewestJudgedRuns) return;
-  all.push_back(test(Member{.name = name}, whole));
+  all.push_back(test(Member{.name = name}, whole, stretches()));
   for (std::size_t k = 0; k < number.stretch.size(); ++k) {
     const Summary part = number.stretch[k].result();
     if (part.n < kFewestJudgedRuns) continue;
-    all.push_back(test(in_stretch(name, k, names), part));
+    all.push_back(test(in_stretch(name, k, names), part, k));
     all.back().family = by_stretch(all.back().family);
   }
+}
+
+/// The part of the mean product of two components that their biases make: in a stretch, or over the
+/// whole drive, of which `stretch` is the number of stretches.
+double WholeError::product_of_biases(std::size_t a, std::size_t b, std::size_t stretch) const {
+  const auto bias = [&](std::size_t component, std::size_t k) {
+    const OverDrive& means = whitened_mean_[component];
+    return (means.stretch.empty() ? means.whole : means.stretch[k]).result().mean;
+  };
+  if (stretch < stretches()) return bias(a, stretch) * bias(b, stretch);
+  double sum = 0.0, n = 0.0;
+  for (std::size_t k = 0; k < stretches(); ++k) {
+    const double product = bias(a, k) * bias(b, k);
+    if (std::isnan(product)) continue;
+    sum += product;
+    n += 1.0;
+  }
+  return sum / n;
 }
 
 void WholeError::add_correlation_tests(const ErrorNames& names,
                                        std::vector<MemberTest>& all) const {
   const double ratio = nees_.ratios().mean;
   if (!(ratio > 0.0)) return;
-  const auto test = [ratio](Member member, const Summary& runs) {
-    return zero_test(Family::correlation, std::move(member),
-                     RunMean::of_product(runs).in_units_of(ratio));
-  };
   std::size_t pair = 0;
   for (std::size_t a = 0; has_pairs() && a < dimension_; ++a) {
     for (std::size_t b = a + 1; b < dimension_; ++b) {
+      const auto test = [&](Member member, const Summary& runs, std::size_t stretch) {
+        const double of_biases = product_of_biases(a, b, stretch);
+        return zero_test(Family::correlation, std::move(member),
+                         RunMean::of_product(runs).in_units_of(ratio, of_biases));
+      };
       add_tests(correlation_[pair++], names.components[a] + " and " + names.components[b], names,
                 test, all);
     }
@@ -255,16 +288,21 @@ void WholeError::add_correlation_tests(const ErrorNames& names,
 }
 
 /// The largest error of all, by the normal law and the number of errors, whatever their dependence
-/// is: it exceeds so many deviations with that probability at most. Errors are compared with the
-/// size that they have, so that a filter that is optimistic everywhere has no heavy tail by that.
+/// is: it exceeds so many deviations with that probability at most. It is compared with the size of
+/// errors of its component in its stretch, so that what is optimistic there is no heavy tail by
+/// that.
 void WholeError::add_largest_test(const ErrorNames& names, std::vector<MemberTest>& all) const {
   if (largest_.samples == 0) return;
-  const double ratio = std::max(1.0, nees_.ratios().mean);
+  const OverDrive& squares = component_[largest_.place.component];
+  std::size_t stretch = 0;
+  while (ends_[stretch] <= largest_.place.scan) ++stretch;
+  const SummaryOf& near = squares.stretch.empty() ? squares.whole : squares.stretch[stretch];
+  const double ratio = std::max(1.0, near.result().mean);
   const double tail = normal_cdf(-largest_.deviations / std::sqrt(ratio));
-  Member member{
-      .name = names.components[largest_.component] + " in run " + std::to_string(largest_.run),
-      .estimate = largest_.deviations};
-  member.from = member.to = names.times[largest_.scan];
+  Member member{.name = names.components[largest_.place.component] + " in run " +
+                        std::to_string(largest_.place.run),
+                .estimate = largest_.deviations};
+  member.from = member.to = names.times[largest_.place.scan];
   member.p = std::min(1.0, 2.0 * tail * static_cast<double>(largest_.samples));
   all.push_back({Family::tails, std::move(member), [](double) { return Interval{kNaN, kNaN}; }});
 }
@@ -274,11 +312,11 @@ std::vector<FamilyTest> WholeError::families(double level, const ErrorNames& nam
   if (nees_.ratios().n < kFewestJudgedRuns) return judge_tests(std::move(all), level);
   all.push_back(nees_.size_test());
   add_stretch_tests(names, all);
-  const auto squares = [](Member member, const Summary& runs) {
+  const auto squares = [](Member member, const Summary& runs, std::size_t) {
     return ratio_test(Family::component, std::move(member), RunMean::of_ratio(runs));
   };
-  const auto mean = [](Member member, const Summary& runs) {
-    return zero_test(Family::bias, std::move(member), RunMean::of_symmetric(runs));
+  const auto mean = [](Member member, const Summary& runs, std::size_t) {
+    return zero_test(Family::bias, std::move(member), RunMean::of_product(runs));
   };
   for (std::size_t k = 0; k < dimension_; ++k) {
     if (dimension_ > 1) add_tests(component_[k], names.components[k], names, squares, all);

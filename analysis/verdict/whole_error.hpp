@@ -38,6 +38,24 @@ struct ErrorNames {
   std::span<const double> times;
 };
 
+/// A sum of numbers of one run, some of which are NaN.
+struct MeanOfRun {
+  double sum = 0.0, n = 0.0;
+  void add(double value) {
+    if (std::isnan(value)) return;
+    sum += value;
+    n += 1.0;
+  }
+  void add(const MeanOfRun& other) {
+    sum += other.sum;
+    n += other.n;
+  }
+  double mean() const { return sum / n; }  ///< NaN of nothing
+  void end_run(SummaryOf& runs) const {
+    if (n > 0.0) runs.add(mean());
+  }
+};
+
 /// Adds up the errors of the complete runs of one cell and tests them (STATISTICS 5). Memory
 /// depends on scans and components, and grows by two numbers with every run; of errors of more than
 /// kMostComponentsInPairs components those of the first runs are kept, at most 256 of them.
@@ -60,12 +78,12 @@ class WholeError {
   BesideTests beside_tests(const ErrorNames& names) const;
   static constexpr auto parts() {
     using Sums = WholeError;
-    return std::tuple(
-        settings(&Sums::dimension_, &Sums::ends_),
-        added(&Sums::nees_, &Sums::stretch_, &Sums::against_run_, &Sums::component_, &Sums::bias_,
-              &Sums::correlation_, &Sums::groups_, &Sums::largest_, &Sums::exact_, &Sums::bets_),
-        appended(&Sums::fingerprints_, &Sums::numbers_),
-        appended_up_to(&Sums::most_kept_runs, &Sums::whitened_));
+    return std::tuple(settings(&Sums::dimension_, &Sums::ends_),
+                      added(&Sums::nees_, &Sums::stretch_, &Sums::against_run_, &Sums::component_,
+                            &Sums::bias_, &Sums::correlation_, &Sums::whitened_mean_,
+                            &Sums::groups_, &Sums::largest_, &Sums::exact_, &Sums::bets_),
+                      appended(&Sums::fingerprints_, &Sums::numbers_),
+                      appended_up_to(&Sums::most_kept_runs, &Sums::whitened_));
   }
 
  private:
@@ -82,14 +100,21 @@ class WholeError {
     void merge(const Maximum& next) { value = std::max(value, next.value); }
     static constexpr auto members() { return std::tuple(&Maximum::value); }
   };
-  /// The largest whitened error of all.
+  /// The largest error of all, in deviations of its component.
   struct Largest {
+    struct Place {
+      std::uint64_t run = 0, scan = 0, component = 0;
+      static constexpr auto members() {
+        return std::tuple(&Place::run, &Place::scan, &Place::component);
+      }
+    };
     double deviations = 0.0;
-    std::uint64_t run = 0, scan = 0, component = 0, samples = 0;
+    Place place = {};
+    std::uint64_t samples = 0;  ///< among which it is the largest
+    void add(double error, const Place& where);
     void merge(const Largest& next);
     static constexpr auto members() {
-      return std::tuple(&Largest::deviations, &Largest::run, &Largest::scan, &Largest::component,
-                        &Largest::samples);
+      return std::tuple(&Largest::deviations, &Largest::place, &Largest::samples);
     }
   };
 
@@ -99,7 +124,8 @@ class WholeError {
   std::size_t first_scan(std::size_t stretch) const {
     return stretch == 0 ? 0 : ends_[stretch - 1];
   }
-  void add_stretches(std::span<const double> nees);
+  std::vector<MeanOfRun> ratios_of(const WhitenedRun& run, std::span<const double> nees) const;
+  void add_stretches(std::span<const MeanOfRun> ratios);
   void add_components(const WhitenedRun& run);
   void add_correlations(const WhitenedRun& run);
   void add_fingerprint(const WhitenedRun& run);
@@ -108,6 +134,7 @@ class WholeError {
   template <class Test>
   void add_tests(const OverDrive& number, const std::string& name, const ErrorNames& names,
                  Test test, std::vector<MemberTest>& all) const;
+  double product_of_biases(std::size_t a, std::size_t b, std::size_t stretch) const;
   void add_correlation_tests(const ErrorNames& names, std::vector<MemberTest>& all) const;
   void add_largest_test(const ErrorNames& names, std::vector<MemberTest>& all) const;
 
@@ -117,7 +144,8 @@ class WholeError {
   std::vector<SummaryOf> stretch_;           ///< {stretch} ratio of a run
   std::vector<SummaryOf> against_run_;       ///< {stretch} less the ratio of the whole run
   std::vector<OverDrive> component_, bias_;  ///< {component}
-  std::vector<OverDrive> correlation_;       ///< {pair of components}
+  std::vector<OverDrive> correlation_;       ///< {pair of components} products of whitened errors
+  std::vector<OverDrive> whitened_mean_;     ///< {component}, where there are pairs
   RunGroups groups_;
   std::vector<std::vector<Bets>> bets_;  ///< on the size, on each component, on each stretch
   Largest largest_;

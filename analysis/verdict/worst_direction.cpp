@@ -77,8 +77,8 @@ std::vector<MemberTest> direction_tests(const ErrorsOfRuns& runs, double ratio,
     if (samples.cols() > 0) whole.push_back(std::move(samples));
   }
   std::vector<MemberTest> all;
-  constexpr std::size_t kFewestRuns = 6;  // three that choose and three that judge
-  if (whole.size() < kFewestRuns) return all;
+  constexpr std::size_t kFewestRunsOfDirections = 6;  // three that choose and three that judge
+  if (whole.size() < kFewestRunsOfDirections) return all;
   for (const std::size_t chosen_by : {std::size_t{0}, std::size_t{1}}) {
     const Eigen::VectorXd direction =
         farthest_direction(mean_products(whole, chosen_by, dimension));

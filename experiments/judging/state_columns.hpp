@@ -44,7 +44,7 @@ struct StateRows {
   std::vector<double> nis;                  ///< {row} empty if the file has none
   std::vector<std::uint32_t> nis_dof;       ///< {row} empty if the file has none
   std::uint64_t unwrapped_innovations = 0;  ///< with an angle beyond pi
-  std::string first_unwrapped;              ///< of them, with file and line
+  std::string first_unwrapped = {};         ///< of them, with file and line
 };
 
 /// Reads estimates (mean and covariance over time) from CSV. Throws StudyError with file, line and

@@ -196,8 +196,7 @@ class SlowRecompute : public testing::Test {
   ScratchFolder folder_;
 };
 
-/// 12 runs are judged by the law of errors that never change, 30 by traces, and 300 by the traces
-/// of some runs and with the spread between runs.
+/// 12 and 30 runs have too few groups for the spread between runs, 300 runs have all families.
 TEST_F(SlowRecompute, TheVerdictOnTheWholeError) {
   for (const std::uint64_t runs : {12u, 30u, 300u}) expect_same_verdict(runs, leave_out_particles);
 }

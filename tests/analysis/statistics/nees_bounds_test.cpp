@@ -73,7 +73,7 @@ double share_found(const PlantedLaw& law, std::uint64_t runs, std::size_t scans,
 }
 
 // The promise is kept by the verdict itself: 4 standard errors, and 3 % since the plan knows the
-// traces that the verdict estimates. It may be exceeded: families that reject help each other.
+// deviation that the verdict estimates. It may be exceeded: families that reject help each other.
 void expect_promise_kept(const PlantedLaw& law, std::size_t scans, double power) {
   const bool is_white = law.memory == Memory::white;
   const NeesPlan plan({.dimension = law.dimension, .scans = is_white ? scans : 1});

@@ -191,7 +191,7 @@ TEST(WholeError, DoesNotDependOnTheOrderOfTheRuns) {
 }
 
 // Law: a filter that is off by one factor at all scans has the p-value and interval of the right
-// one, scaled: the null is imposed before the traces are taken.
+// one, scaled: the deviation over runs has the scale of the ratio.
 TEST(WholeError, ScalesItsIntervalWithTheRatio) {
   const Verdict right = verdict_of({.memory = Memory::ar95}, 5, 60, kScansOfARun);
   const Verdict off = verdict_of({.memory = Memory::ar95, .ratio = 4.0}, 5, 60, kScansOfARun);
