@@ -53,6 +53,18 @@ TEST_F(StudyAnalysisOfAFile, JudgesEveryCellAndNamesFailedRuns) {
               9.0 * study.cells[0].over_runs("position_mse").mean, 0.5);
 }
 
+/// Poses that a scan drew all at one place claim nothing: too few of them are left.
+TEST_F(StudyAnalysisOfAFile, TakesNoSpreadOfZeroForAClaim) {
+  write_synthetic_result(path_, 12, 400, [](std::size_t cell, std::uint64_t, RunRecord& record) {
+    if (cell != 0) return;
+    const auto covariance = record.column<double>(*record.layout().find("pose_covariance"));
+    std::ranges::fill(covariance.first(9), 0.0);
+  });
+  const Verdict found = analyze(ResultFile(path_)).cells[0].verdict;
+  EXPECT_TRUE(found.beside.exact.empty());
+  EXPECT_EQ(found.answer, Answer::undecided);
+}
+
 /// An index that is none: the message names file, cell and run.
 TEST_F(StudyAnalysisOfAFile, RefusesAncestorsThatAreNoParticles) {
   const auto spoil = [](std::size_t cell, std::uint64_t run, RunRecord& record) {
