@@ -383,19 +383,28 @@ std::string answer_words(const Verdict& verdict) {
 /// "in every component and in every eighth of the drive", as far as these were judged.
 std::string judged_parts(const Verdict& verdict) {
   const FamilyTest* bias = verdict.find(Family::bias);
-  if (bias == nullptr) return ", on average; its components were not judged";
+  if (bias == nullptr) return " on average";
   const bool is_one = bias->members.size() == 1;
-  std::string parts = is_one ? "" : ", in every component";
+  std::string parts = is_one ? "" : " in every component";
   if (verdict.find(Family::stretch) != nullptr) {
-    parts += (is_one ? "," : " and") + std::string(" in every eighth of the drive");
+    parts += (is_one ? "" : " and") + std::string(" in every eighth of the drive");
   }
-  const bool has_correlations = is_one || verdict.find(Family::correlation) != nullptr;
-  return parts + (has_correlations ? "" : "; correlations were not judged");
+  return parts;
+}
+
+/// "; correlations were not judged"; empty if everything was.
+std::string not_judged(const Verdict& verdict) {
+  const FamilyTest* bias = verdict.find(Family::bias);
+  if (bias == nullptr) return "; its components were not judged";
+  const bool has_correlations =
+      bias->members.size() == 1 || verdict.find(Family::correlation) != nullptr;
+  return has_correlations ? "" : "; correlations were not judged";
 }
 
 std::string consistent_words(const Verdict& verdict) {
   const std::string tails = tail_words(verdict);
-  return within_words(verdict) + slight_words(verdict) + judged_parts(verdict) + "; " +
+  return within_words(verdict) + judged_parts(verdict) + slight_words(verdict) +
+         not_judged(verdict) + "; " +
          (tails.empty() ? "events rarer than 1 in " + std::to_string(complete_runs(verdict) / 3) +
                               " runs are not excluded"
                         : tails);

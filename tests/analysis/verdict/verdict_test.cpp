@@ -235,7 +235,7 @@ TEST(Words, SaySlightDeviationsAndWhatIsNotExcluded) {
   const FamilyTest correlation = family(Family::correlation, {{"a and b", {-0.05, 0.05}}});
   EXPECT_EQ(
       sentence("smoother", judged({size(kRight), stretches({kRight, kRight}), bias, correlation})),
-      "smoother is consistent within 1.1, in every component and in every eighth of the drive; "
+      "smoother is consistent within 1.1 in every component and in every eighth of the drive; "
       "events rarer than 1 in 66 runs are not excluded.");
   Verdict open = judged({size({0.8, 1.3})});
   open.more_runs = 130;

@@ -42,7 +42,7 @@ TEST_F(GateOfAFile, TellsByItsExitCode) {
   run();
   const Called right = gate("right", {"--within", "2"});
   EXPECT_EQ(right.code, 0) << right.out << right.err;
-  EXPECT_THAT(right.out, ContainsRegex("^right is consistent within 2, in every component"));
+  EXPECT_THAT(right.out, ContainsRegex("^right is consistent within 2 in every component"));
   const Called too_sure = gate("too_sure", {"--within", "1.5"});
   EXPECT_EQ(too_sure.code, 4);
   EXPECT_THAT(
