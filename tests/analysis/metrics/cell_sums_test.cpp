@@ -198,7 +198,10 @@ TEST(Cautions, SayHowFewParticlesShowARatioOfTwo) {
   cell.label = "pf";
   cell.particles = 20;
   cell.leading = Moments::corrected;
-  cell.nees.push_back({.moments = Moments::corrected, .series = {.dimension = 3, .samples = 10}});
+  NeesResult& nees = cell.nees.emplace_back();
+  nees.moments = Moments::corrected;
+  nees.series.dimension = 3;
+  nees.series.samples = 10;
   const std::array<ScoreTable::Value, 1> ess = {{{"ess", 20.0}}};
   cell.scores.add(ess);
   EXPECT_NEAR(shown_for_twice(cell).value(), 1.789, 2e-3);
