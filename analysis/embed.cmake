@@ -43,8 +43,8 @@ endfunction()
 separate_arguments(STYLES)
 separate_arguments(SCRIPTS)
 separate_arguments(PROSE)
-file(WRITE ${SOURCE} "#include \"analysis/output/prose.hpp\"\n"
-                     "#include \"analysis/page/html.hpp\"\n\n"
+file(WRITE ${SOURCE} "#include \"analysis/study/prose.hpp\"\n"
+                     "#include \"analysis/render/page/html.hpp\"\n\n"
                      "namespace montecarta::analysis {\n")
 append_text(page_style kStyles "${STYLES}")
 append_text(page_script kScripts "${SCRIPTS}")

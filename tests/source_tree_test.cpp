@@ -5,6 +5,7 @@
 #include "tests/doubles/matchers.hpp"
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <regex>
 #include <set>
@@ -51,30 +52,58 @@ std::vector<std::string> forbidden_includes(const Tree& tree) {
 
 std::string folder_of(const std::string& path) { return fs::path(path).parent_path().string(); }
 
-/// Folders outside tests that lie on a cycle of includes, of any length, or between two cycles.
-/// They are left when all folders are removed, one after the other, that use none or are used by
-/// none.
-std::set<std::string> include_cycles(const Tree& tree) {
+/// The header and the source of one name, without their extension.
+std::string module_of(const std::string& path) {
+  return fs::path(path).replace_extension().string();
+}
+
+/// Folders or modules outside tests, as `unit_of` names them, that lie on a cycle of includes, of
+/// any length, or between two cycles. They are left when all units are removed, one after the
+/// other, that use none or are used by none.
+std::set<std::string> include_cycles(const Tree& tree, std::string (*unit_of)(const std::string&)) {
   std::set<std::pair<std::string, std::string>> uses;
   std::set<std::string> left;
   for (const auto& [path, lines] : tree) {
     if (!is_cpp(path) || top_folder_of(path) == "tests") continue;
     for (const std::string& name : includes_of(lines)) {
-      if (folder_of(path) != folder_of(name)) uses.emplace(folder_of(path), folder_of(name));
+      if (unit_of(path) != unit_of(name)) uses.emplace(unit_of(path), unit_of(name));
     }
-    left.insert(folder_of(path));
+    left.insert(unit_of(path));
   }
-  const auto is_free = [&](const std::string& folder) {
-    const auto to = [&](const auto& use) {
-      return use.first == folder && left.contains(use.second);
-    };
+  const auto is_free = [&](const std::string& unit) {
+    const auto to = [&](const auto& use) { return use.first == unit && left.contains(use.second); };
     const auto from = [&](const auto& use) {
-      return use.second == folder && left.contains(use.first);
+      return use.second == unit && left.contains(use.first);
     };
     return std::ranges::none_of(uses, to) || std::ranges::none_of(uses, from);
   };
   while (std::erase_if(left, is_free) > 0) continue;
   return left;
+}
+
+/// The rooms of `analysis` from the lowest to the highest; an include goes down only.
+constexpr std::array kRooms = {"statistics", "run", "verdict", "study", "metrics", "render"};
+
+/// Index in kRooms; -1 if the path is in none of them.
+std::ptrdiff_t room_of(const std::string& path) {
+  const auto is_in = [&](const std::string& room) {
+    return path.starts_with("analysis/" + room + "/");
+  };
+  const auto found = std::ranges::find_if(kRooms, is_in);
+  return found == kRooms.end() ? -1 : found - kRooms.begin();
+}
+
+/// Includes of `analysis` that go up. Nobody includes a metric: the list of metrics names them all.
+std::vector<std::string> upward_includes(const Tree& tree) {
+  std::vector<std::string> found;
+  for (const auto& [path, lines] : tree) {
+    if (!is_cpp(path) || room_of(path) < 0) continue;
+    for (const std::string& name : includes_of(lines)) {
+      if (room_of(name) > room_of(path) || name.starts_with("analysis/metrics/"))
+        found.push_back(path + " includes " + name);
+    }
+  }
+  return found;
 }
 
 /// Files outside tests that include a header of which `prefix` is the beginning.
@@ -158,17 +187,31 @@ TEST(SourceTree, NamespacesAreThoseOfTheFolders) {
 }
 
 TEST(SourceTree, FoldersIncludeEachOtherInNoCycle) {
-  EXPECT_THAT(include_cycles(sources()), IsEmpty());
+  EXPECT_THAT(include_cycles(sources(), folder_of), IsEmpty());
 }
 
-TEST(SourceTree, StatisticsKnowNumbersOnly) {
+TEST(SourceTree, ModulesIncludeEachOtherInNoCycle) {
+  EXPECT_THAT(include_cycles(sources(), module_of), IsEmpty());
+}
+
+TEST(SourceTree, RoomsOfTheAnalysisIncludeOnlyThoseBelow) {
+  EXPECT_THAT(upward_includes(sources()), IsEmpty());
   for (const auto& [path, lines] : sources()) {
-    if (!path.starts_with("analysis/statistics/")) continue;
-    for (const std::string& name : includes_of(lines)) {
-      const bool is_ours = name.starts_with("analysis/statistics/");
-      EXPECT_TRUE(is_ours || !name.starts_with("analysis/")) << path << " includes " << name;
-    }
+    if (!path.starts_with("analysis/") || !is_cpp(path)) continue;
+    EXPECT_GE(room_of(path), 0) << path << " is in no room";
   }
+}
+
+// A metric has a source, and its prose the same name.
+TEST(SourceTree, ProseOfMetricsBelongsToASource) {
+  const fs::path metrics = fs::path(MONTECARTA_SOURCE_DIR) / "analysis/metrics";
+  std::size_t texts = 0;
+  for (const auto& entry : fs::directory_iterator(metrics)) {
+    if (entry.path().extension() != ".md") continue;
+    ++texts;
+    EXPECT_TRUE(fs::exists(fs::path(entry.path()).replace_extension(".cpp"))) << entry.path();
+  }
+  EXPECT_GT(texts, 10U);
 }
 
 TEST(SourceTree, LibrariesAreUsedInOneOrTwoFiles) {
@@ -260,7 +303,7 @@ TEST(SourceTree, ArchitectureNamesSourcesThatExist) {
 
 TEST(SourceTree, TheTreeThatIsReadIsWhole) {
   for (const char* path : {"engine/errors.hpp", "tests/run", "filters/CMakeLists.txt",
-                           "analysis/page/script/player.js"}) {
+                           "analysis/render/page/script/player.js"}) {
     EXPECT_TRUE(sources().contains(path)) << path;
   }
 }
@@ -272,8 +315,21 @@ TEST(SourceTree, IncludeCyclesAreFound) {
                      {"engine/d/six.cpp", {"#include \"engine/e/seven.hpp\""}},
                      {"engine/e/seven.hpp", {"#include \"engine/f/eight.hpp\""}},
                      {"engine/f/eight.hpp", {"#include \"engine/d/nine.hpp\""}}};
-  EXPECT_THAT(include_cycles(tree),
+  EXPECT_THAT(include_cycles(tree, folder_of),
               ElementsAre("engine/a", "engine/b", "engine/d", "engine/e", "engine/f"));
+  EXPECT_THAT(include_cycles(tree, module_of), IsEmpty());
+  const Tree pair = {{"engine/a/one.cpp", {"#include \"engine/a/two.hpp\""}},
+                     {"engine/a/two.hpp", {"#include \"engine/a/one.hpp\""}}};
+  EXPECT_THAT(include_cycles(pair, module_of), ElementsAre("engine/a/one", "engine/a/two"));
+}
+
+TEST(SourceTree, UpwardIncludesAreFound) {
+  const Tree tree = {{"analysis/run/a.cpp", {"#include \"analysis/study/b.hpp\""}},
+                     {"analysis/render/c.cpp",
+                      {"#include \"analysis/run/d.hpp\"", "#include \"analysis/metrics/e.hpp\""}}};
+  EXPECT_THAT(upward_includes(tree),
+              ElementsAre("analysis/render/c.cpp includes analysis/metrics/e.hpp",
+                          "analysis/run/a.cpp includes analysis/study/b.hpp"));
 }
 
 // The rules above can fail: a tree where each is broken once.

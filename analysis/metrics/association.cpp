@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Associations of detections, summed over the scans of a run (AssociationCounts).
-#include "analysis/metrics/cell_report.hpp"
-#include "analysis/metrics/measured_run.hpp"
-#include "analysis/statistics/spread.hpp"
+#include "analysis/run/measured_run.hpp"
+#include "analysis/study/cell_report.hpp"
 
 #include <cmath>
 

@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Errors beside the deviations that the filter reports (STATISTICS 8).
-#include "analysis/metrics/error_envelopes.hpp"
+#include "analysis/run/measured_run.hpp"
+#include "analysis/study/cell_report.hpp"
+#include "analysis/study/error_moments.hpp"
 
-#include "analysis/metrics/cell_report.hpp"
-#include "analysis/metrics/measured_run.hpp"
-#include "engine/numbers/angle.hpp"
-
-#include <cmath>
+#include <cstddef>
 #include <optional>
+#include <string>
+#include <tuple>
+#include <vector>
 
 namespace montecarta::analysis {
 namespace {
 
 constexpr double kEnvelope = 3.0;  // standard deviations
+
 constexpr std::size_t kMostEnvelopeRows = 6;
 
 class ErrorsOverRuns final : public MergedSums<ErrorsOverRuns> {
@@ -92,44 +94,6 @@ std::vector<Figure> error_envelopes_figures(const StudyAnalysis& study) {
 }
 
 }  // namespace
-
-ErrorTrace error_trace(std::uint64_t run, std::span<const Eigen::Vector3d> errors,
-                       std::span<const Eigen::Matrix3d> covariances) {
-  ErrorTrace trace;
-  trace.run = run;
-  for (std::size_t s = 0; s < errors.size(); ++s) {
-    for (int c = 0; c < 3; ++c) {
-      const auto component = static_cast<std::size_t>(c);
-      trace.error[component].push_back(errors[s](c));
-      trace.deviation[component].push_back(std::sqrt(covariances[s](c, c)));
-    }
-  }
-  return trace;
-}
-
-void ErrorMoments::add(std::span<const Eigen::Vector3d> errors,
-                       std::span<const Eigen::Matrix3d> covariances) {
-  for (std::size_t s = 0; s < scans_.size(); ++s) {
-    if (!errors[s].allFinite() || !covariances[s].allFinite()) continue;
-    scans_[s].n += 1.0;
-    scans_[s].error += errors[s];
-    scans_[s].squares += errors[s].cwiseAbs2();
-    scans_[s].variances += covariances[s].diagonal();
-  }
-}
-
-ErrorsOverTime ErrorMoments::result() const {
-  ErrorsOverTime found;
-  for (const Sums& sums : scans_) {
-    for (int c = 0; c < 3; ++c) {
-      const auto component = static_cast<std::size_t>(c);
-      found.rms[component].push_back(std::sqrt(sums.squares(c) / sums.n));
-      found.believed[component].push_back(std::sqrt(sums.variances(c) / sums.n));
-      found.mean[component].push_back(sums.error(c) / sums.n);
-    }
-  }
-  return found;
-}
 
 Metric error_envelopes_metric() {
   return {.sums = make_sums<ErrorsOverRuns>,

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Errors of the estimates, cost of a run, and numbers of arithmetic fallbacks.
-#include "analysis/metrics/cell_report.hpp"
-#include "analysis/metrics/measured_run.hpp"
-#include "analysis/statistics/spread.hpp"
-#include "engine/numbers/angle.hpp"
+#include "analysis/run/measured_run.hpp"
+#include "analysis/study/cell_report.hpp"
 
 #include <cmath>
+#include <string>
+#include <vector>
 
 namespace montecarta::analysis {
 namespace {
@@ -18,9 +18,11 @@ double mean_of_roots(const std::vector<double>& squares) {
 }
 
 double position_mse(const MeasuredRun& run) { return mean_of(run.metrics.squared_position()); }
+
 double position_mean(const MeasuredRun& run) {
   return mean_of_roots(run.metrics.squared_position());
 }
+
 double heading_mse(const MeasuredRun& run) { return mean_of(run.metrics.squared_heading()); }
 
 constexpr Score kErrorsScores[] = {
@@ -83,16 +85,6 @@ std::vector<Figure> errors_figures(const StudyAnalysis& study) { return {rmse_fi
 
 Metric errors_metric() {
   return {.scores = kErrorsScores, .scan_series = kErrorsSeries, .figures = errors_figures};
-}
-
-Metric cost_metric() {
-  static constexpr Score kScores[] = {
-      {"numerical_faults", "1", "factorisations answered by a fallback",
-       [](const MeasuredRun& run) { return sum_of(run.rows.numerical_faults); }},
-      {"cpu_seconds", "s", "processor time of a run",
-       [](const MeasuredRun& run) { return run.rows.cpu_seconds; }},
-  };
-  return {.scores = kScores};
 }
 
 }  // namespace montecarta::analysis

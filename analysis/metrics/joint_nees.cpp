@@ -1,51 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Pose and map together.
-#include "analysis/metrics/joint_nees.hpp"
+#include "analysis/verdict/joint_nees.hpp"
 
-#include "analysis/metrics/cell_report.hpp"
-#include "analysis/metrics/measured_run.hpp"
-#include "analysis/output/strips.hpp"
-#include "analysis/statistics/spread.hpp"
-#include "engine/numbers/angle.hpp"
-
-#include <Eigen/Cholesky>
+#include "analysis/run/measured_run.hpp"
+#include "analysis/study/cell_report.hpp"
+#include "analysis/study/strips.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <set>
-#include <utility>
+#include <string>
+#include <tuple>
+#include <vector>
 
 namespace montecarta::analysis {
 namespace {
-
-constexpr double kJointFamilies = 2.0;  // size and scans
-
-using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-/// e' P^-1 e by Cholesky of the correlation matrix, so that the pivots are independent of units.
-double quadratic_form(const Eigen::VectorXd& error, const Eigen::MatrixXd& covariance) {
-  const Eigen::VectorXd scale = covariance.diagonal().cwiseSqrt().cwiseInverse();
-  if (!error.allFinite() || !covariance.allFinite() || !scale.allFinite()) return kNaN;
-  const Eigen::LLT<Eigen::MatrixXd> L(scale.asDiagonal() * covariance * scale.asDiagonal());
-  if (L.info() != Eigen::Success) return kNaN;
-  return L.matrixL().solve(scale.cwiseProduct(error)).squaredNorm();
-}
-
-/// Errors of the pose and of each landmark that is in the map and has a known position.
-Eigen::VectorXd error_of(std::span<const double> mean, std::span<const double> pose,
-                         std::span<const Eigen::Vector2d> landmarks,
-                         std::vector<Eigen::Index>& rows) {
-  Eigen::VectorXd error(static_cast<Eigen::Index>(mean.size()));
-  rows = {0, 1, 2};
-  error.head<3>() << mean[0] - pose[0], mean[1] - pose[1], wrap(mean[2] - pose[2]);
-  for (std::size_t l = 0; l < landmarks.size() && 4 + 2 * l < mean.size(); ++l) {
-    const auto row = static_cast<Eigen::Index>(3 + 2 * l);
-    const bool in_map = !std::isnan(mean[3 + 2 * l]);
-    error.segment<2>(row) = Eigen::Vector2d(mean[3 + 2 * l], mean[4 + 2 * l]) - landmarks[l];
-    if (in_map) rows.insert(rows.end(), {row, row + 1});
-  }
-  return error;
-}
 
 constexpr Score kJointNeesScores[] = {
     {"joint_nees", "1", "joint NEES of pose and map per component",
@@ -213,76 +184,6 @@ std::vector<Section> joint_nees_sections(const StudyAnalysis& study) {
 std::vector<Figure> joint_nees_figures(const StudyAnalysis& study) { return {joint_figure(study)}; }
 
 }  // namespace
-
-std::vector<JointScore> joint_scores(const JointRows& rows, std::span<const std::uint32_t> scans,
-                                     std::span<const double> truth,
-                                     std::span<const Eigen::Vector2d> landmarks) {
-  std::vector<JointScore> scores;
-  std::vector<Eigen::Index> known;
-  const std::size_t states = rows.states();
-  if (states == 0) return scores;
-  for (std::size_t k = 0; k * states < rows.mean.size(); ++k) {
-    const auto mean = std::span(rows.mean).subspan(k * states, states);
-    const Eigen::VectorXd error =
-        error_of(mean, truth.subspan(3 * std::size_t{scans[k]}, 3), landmarks, known);
-    const auto size = static_cast<Eigen::Index>(states);
-    const Eigen::Map<const RowMajor> P(rows.covariance.data() + k * states * states, size, size);
-    scores.push_back({quadratic_form(error(known), P(known, known)), known.size()});
-  }
-  return scores;
-}
-
-double nees_per_component(std::span<const JointScore> scores) {
-  double sum = 0.0, dimensions = 0.0;
-  for (const JointScore& score : scores) {
-    if (std::isnan(score.nees)) continue;
-    sum += score.nees;
-    dimensions += static_cast<double>(score.dimension);
-  }
-  return sum / dimensions;
-}
-
-JointNeesSums::JointNeesSums(std::span<const double> times)
-    : times_(times.begin(), times.end()), nees_(times.size()), all_dimensions_(times.size()) {}
-
-void JointNeesSums::add(std::span<const JointScore> run) {
-  if (run.empty()) return;
-  ++n_runs_;
-  std::vector<double> nees(times_.size(), kNaN), dimensions(times_.size());
-  for (std::size_t k = 0; k < run.size(); ++k) {
-    nees[k] = run[k].nees;
-    dimensions[k] = static_cast<double>(run[k].dimension);
-    all_dimensions_[k] += dimensions[k];
-  }
-  nees_.add(nees, dimensions);
-}
-
-JointConsistency JointNeesSums::result(double level, bool identities_known, double within) const {
-  JointConsistency found;
-  found.stored = n_runs_ > 0;
-  if (!found.stored) return found;
-  if (!identities_known) {
-    found.missing = "nobody knows which landmark is which";
-    return found;
-  }
-  found.verdict = judge(nees_.families(level, times_), level, within, n_runs_);
-  const auto judged = std::ranges::count_if(
-      nees_.scans(), [](const SummedError::Scan& row) { return row.dimensions > 0.0; });
-  const double of_each = 1.0 - (1.0 - level) / (kJointFamilies * static_cast<double>(judged));
-  for (std::size_t k = 0; k < times_.size(); ++k) {
-    const SummedError::Scan& row = nees_.scans()[k];
-    const bool is_defined = row.n() > 0.0;
-    found.samples += n_runs_;
-    found.undefined += n_runs_ - static_cast<std::uint64_t>(row.n());
-    found.runs.push_back(static_cast<std::uint32_t>(row.n()));
-    found.dimension.push_back(all_dimensions_[k] / static_cast<double>(n_runs_));
-    found.average.push_back(row.ratio());
-    found.bounds.push_back({kNaN, kNaN});
-    if (!is_defined) continue;
-    found.bounds.back() = nees_bounds(static_cast<std::uint64_t>(row.dimensions), 1, of_each);
-  }
-  return found;
-}
 
 Metric joint_nees_metric() {
   return {.scores = kJointNeesScores,

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Information about the heading of the whole, which no detection can give (STATISTICS 22).
-#include "analysis/metrics/cell_report.hpp"
-#include "analysis/metrics/measured_run.hpp"
-#include "analysis/statistics/spread.hpp"
-#include "engine/numbers/angle.hpp"
+#include "analysis/run/measured_run.hpp"
+#include "analysis/study/cell_report.hpp"
 
 #include <cmath>
 

@@ -1,82 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Independent measurements of the path.
-#include "analysis/metrics/references.hpp"
-
-#include "analysis/metrics/cell_report.hpp"
-#include "analysis/metrics/map_errors.hpp"
-#include "analysis/metrics/measured_run.hpp"
-#include "analysis/statistics/spread.hpp"
-#include "engine/errors.hpp"
-#include "engine/numbers/angle.hpp"
-
-#include <Eigen/Geometry>
+#include "analysis/run/measured_run.hpp"
+#include "analysis/study/cell_report.hpp"
+#include "analysis/study/reference_sums.hpp"
+#include "analysis/study/verdict_table.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <iterator>
 #include <limits>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <vector>
 
 namespace montecarta::analysis {
 namespace {
-
-Eigen::Vector2d centre_of(std::span<const Eigen::Vector2d> points) {
-  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-  for (const Eigen::Vector2d& point : points) sum += point;
-  return sum / static_cast<double>(points.size());
-}
-
-using Points = std::vector<Eigen::Vector2d>;
-
-/// Distances over fixes in single numbers [m].
-struct Distances {
-  double rms, median, gated_rms, gated_share;
-};
-
-double root_mean(double sum, std::size_t n) { return std::sqrt(sum / static_cast<double>(n)); }
-
-Distances in_numbers(const std::vector<double>& squared) {
-  const double median = std::sqrt(median_of(squared));
-  const double gate = kReferenceGate * median;
-  double all = 0.0, within = 0.0;
-  std::size_t n = 0;
-  for (const double square : squared) {
-    all += square;
-    if (!(square <= gate * gate)) continue;
-    within += square;
-    ++n;
-  }
-  return {root_mean(all, squared.size()), median, root_mean(within, n),
-          static_cast<double>(n) / static_cast<double>(squared.size())};
-}
-
-std::vector<double> squared_distances(const Points& estimate, const Points& fixes) {
-  std::vector<double> squared;
-  for (std::size_t f = 0; f < fixes.size(); ++f) {
-    squared.push_back((estimate[f] - fixes[f]).squaredNorm());
-  }
-  return squared;
-}
-
-Points positions_of(const std::vector<Pose>& poses) {
-  Points points;
-  for (const Pose& pose : poses) points.emplace_back(pose.x, pose.y);
-  return points;
-}
-
-Points moved_by(const RigidMotion& motion, const Points& estimate) {
-  Points moved;
-  for (const Eigen::Vector2d& point : estimate) moved.push_back(motion(point));
-  return moved;
-}
-
-double heading_rmse(const std::vector<Pose>& poses, const std::vector<double>& headings) {
-  double sum = 0.0;
-  for (std::size_t f = 0; f < headings.size(); ++f) {
-    const double error = boxminus({0.0, 0.0, headings[f]}, poses[f])(2);
-    sum += error * error;
-  }
-  return root_mean(sum, headings.size());  // NaN of none
-}
 
 /// No fix is known better than to a centimetre, no heading than to a hundredth of a degree.
 std::string mean_text(const Spread& spread, double factor = 1.0) {
@@ -214,20 +154,6 @@ std::string baseline_note(const StudyAnalysis& study) {
                 {"rms", readable(compared.summary.mean)}});
 }
 
-void add_spread(const std::string& name, const std::string& units, const Spread& spread,
-                Frame::Row& all) {
-  all.emplace_back(name + "_mean", units, spread.summary.mean);
-  all.emplace_back(name + "_standard_error", units, spread.summary.standard_error());
-  all.emplace_back(name + "_median", units, spread.median);
-  all.emplace_back(name + "_least", units, spread.least);
-  all.emplace_back(name + "_greatest", units, spread.greatest);
-}
-
-/// Numbers of the map, which are the same against every reference.
-bool is_of_the_map(const std::string& name) {
-  return name.starts_with("map_") || name.starts_with("beacon");
-}
-
 Frame references_frame(const StudyAnalysis& study) {
   Frame frame;
   for (const CellAnalysis& cell : study.cells) {
@@ -254,6 +180,7 @@ Frame reference_errors_frame(const StudyAnalysis& study) {
 
 /// Nearer than this a reference cannot tell [m]: satellite positions are good to a centimetre.
 constexpr double kLeastError = 0.01;
+
 constexpr double kTwoDecades = 100.0;
 
 /// One axis for all panels, which begins at kLeastError where it is logarithmic.
@@ -320,100 +247,6 @@ class ReferencesOverRuns final : public MergedSums<ReferencesOverRuns> {
   std::vector<ReferenceAccumulator> references_;
 };
 
-std::vector<Section> references_sections(const StudyAnalysis& study) {
-  if (study.has_truth && study.references.empty()) return {};
-  Section section = section_of("references");
-  if (!study.has_truth) section.add_html("<p>" + no_truth_sentence(study) + "</p>\n");
-  section.add("reference", reference_table(study));
-  section.add("baseline", baseline_table(study));
-  section.add("map", map_table(study));
-  section.add(reference_notes(study));
-  return {section};
-}
-
-}  // namespace
-
-Eigen::Vector2d RigidMotion::operator()(const Eigen::Vector2d& point) const {
-  return Eigen::Rotation2Dd(angle) * point + shift;
-}
-
-RigidMotion rigid_alignment(std::span<const Eigen::Vector2d> from,
-                            std::span<const Eigen::Vector2d> onto) {
-  expect(from.size() == onto.size(), "points are aligned in pairs");
-  RigidMotion motion;
-  if (from.empty()) return motion;
-  const Eigen::Vector2d centre = centre_of(from), target = centre_of(onto);
-  double along = 0.0, across = 0.0;  // sums of |a||b| cos and |a||b| sin of the angle from a to b
-  for (std::size_t i = 0; i < from.size(); ++i) {
-    const Eigen::Vector2d a = from[i] - centre, b = onto[i] - target;
-    along = std::fma(a.x(), b.x(), std::fma(a.y(), b.y(), along));
-    across = std::fma(a.x(), b.y(), std::fma(-a.y(), b.x(), across));
-  }
-  motion.angle = std::atan2(across, along);
-  motion.shift = target - Eigen::Rotation2Dd(motion.angle) * centre;
-  return motion;
-}
-
-ReferenceRun measure_against(const PathAtFixes& fixes, std::span<const double> path) {
-  const std::vector<Pose> poses = fixes.interpolate(path);
-  const Points estimate = positions_of(poses);
-  ReferenceRun run;
-  if (poses.empty()) return run;
-  run.squared_error = squared_distances(estimate, fixes.positions());
-  const Distances raw = in_numbers(run.squared_error);
-  run.alignment = rigid_alignment(estimate, fixes.positions());
-  const Distances fitted =
-      in_numbers(squared_distances(moved_by(run.alignment, estimate), fixes.positions()));
-  run.scores = {raw.rms,          raw.median,         raw.gated_rms,
-                raw.gated_share,  fitted.rms,         fitted.median,
-                fitted.gated_rms, fitted.gated_share, heading_rmse(poses, fixes.headings())};
-  return run;
-}
-
-Spread ReferenceAnalysis::over_runs(double ReferenceScores::*score) const {
-  std::vector<double> values;
-  for (const ReferenceScores& run : runs) {
-    if (run.has_fixes()) values.push_back(run.*score);
-  }
-  return spread_of(values);
-}
-
-std::size_t ReferenceAnalysis::with_fixes() const {
-  return static_cast<std::size_t>(std::ranges::count_if(runs, &ReferenceScores::has_fixes));
-}
-
-std::size_t ReferenceAnalysis::lost() const {
-  return static_cast<std::size_t>(std::ranges::count_if(
-      runs, [](const ReferenceScores& run) { return run.has_fixes() && run.lost(); }));
-}
-
-std::size_t ReferenceAnalysis::better_than(double baseline, double ReferenceScores::*score) const {
-  return static_cast<std::size_t>(std::ranges::count_if(
-      runs, [&](const ReferenceScores& run) { return run.*score < baseline; }));
-}
-
-void ReferenceAccumulator::add(const ReferenceRun& run) {
-  runs_.push_back(run.scores);
-  if (fixes_ == Fixes::own) return;
-  squared_.resize(run.squared_error.size());
-  for (std::size_t f = 0; f < squared_.size(); ++f) squared_[f] += run.squared_error[f];
-}
-
-ReferenceAnalysis ReferenceAccumulator::result() const {
-  ReferenceAnalysis analysis{runs_, squared_};
-  for (double& error : analysis.error_over_time) {
-    error = std::sqrt(error / static_cast<double>(runs_.size()));
-  }
-  return analysis;
-}
-
-const CellAnalysis* baseline_of(const StudyAnalysis& study) {
-  const auto found = std::ranges::find_if(study.cells, [](const CellAnalysis& cell) {
-    return cell.filter == "ekf_slam" && cell.complete > 0 && !cell.get<ReferenceAnalyses>().empty();
-  });
-  return found == study.cells.end() ? nullptr : &*found;
-}
-
 TextTable reference_table(const StudyAnalysis& study) {
   TextTable table{.keys = 2};
   for (const CellAnalysis& cell : study.cells) {
@@ -436,11 +269,6 @@ TextTable baseline_table(const StudyAnalysis& study) {
   });
 }
 
-std::string no_truth_sentence(const StudyAnalysis& study) {
-  const bool has_errors = std::ranges::any_of(study.references, &JudgedReference::has_errors);
-  return prose("references", has_errors ? "known errors" : "no truth");
-}
-
 std::vector<std::string> reference_notes(const StudyAnalysis& study) {
   std::vector<std::string> notes;
   const auto add = [&](const char* key, const Values& values = {}) {
@@ -458,34 +286,6 @@ std::vector<std::string> reference_notes(const StudyAnalysis& study) {
   if (study.own_drives > 0) add("no series");
   add("map");
   return notes;
-}
-
-Frame::Row reference_numbers(const CellAnalysis& cell, std::size_t reference) {
-  const ReferenceAnalysis& against = cell.get<ReferenceAnalyses>()[reference];
-  const auto count = [](std::size_t n) { return static_cast<double>(n); };
-  const bool judged = cell.complete == 0 || against.with_fixes() > 0;
-  const std::size_t lost = against.lost() + cell.failures.size();
-  Frame::Row all = {{"runs_failed", "1", count(cell.failures.size())},
-                    {"runs_complete", "1", count(cell.complete)},
-                    {"runs_lost", "1", judged ? count(lost) : kNaN}};
-  const auto one = [&](const char* name, const char* units, double ReferenceScores::*score) {
-    add_spread(name, units, against.over_runs(score), all);
-  };
-  one("rms", "m", &ReferenceScores::rms);
-  one("median_error", "m", &ReferenceScores::median);
-  one("gated_rms", "m", &ReferenceScores::gated_rms);
-  one("gated_share", "1", &ReferenceScores::gated_share);
-  one("aligned_rms", "m", &ReferenceScores::aligned_rms);
-  one("aligned_median_error", "m", &ReferenceScores::aligned_median);
-  one("aligned_gated_rms", "m", &ReferenceScores::aligned_gated_rms);
-  one("aligned_gated_share", "1", &ReferenceScores::aligned_gated_share);
-  one("heading_rmse", "rad", &ReferenceScores::heading_rmse);
-  for (const Score& score : all_scores()) {
-    if (!is_of_the_map(score.name)) continue;
-    add_spread(score.name, score.units, cell.known_over_runs(score.name), all);
-  }
-  all.emplace_back("cpu_seconds_mean", "s", cell.over_runs("cpu_seconds").mean);
-  return all;
 }
 
 Figure reference_error_figure(const StudyAnalysis& study) {
@@ -513,6 +313,19 @@ Figure map_size_figure(const StudyAnalysis& study) {
   if (!panels.empty()) add(panels, study.times, figure);
   return figure;
 }
+
+std::vector<Section> references_sections(const StudyAnalysis& study) {
+  if (study.has_truth && study.references.empty()) return {};
+  Section section = section_of("references");
+  if (!study.has_truth) section.add_html("<p>" + no_truth_sentence(study) + "</p>\n");
+  section.add("reference", reference_table(study));
+  section.add("baseline", baseline_table(study));
+  section.add("map", map_table(study));
+  section.add(reference_notes(study));
+  return {section};
+}
+
+}  // namespace
 
 Metric references_metric() {
   return {.scores = kReferencesScores,

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Efficiency of each cell against the study's cell of full smoothing.
-#include "analysis/metrics/cell_analysis.hpp"
-#include "analysis/metrics/cell_report.hpp"
-#include "analysis/statistics/spread.hpp"
+#include "analysis/study/cell_report.hpp"
+#include "analysis/study/paired_runs.hpp"
 
 #include <algorithm>
 #include <cmath>

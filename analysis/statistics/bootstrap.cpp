@@ -67,20 +67,6 @@ bool all_finite(std::span<const double> values) {
 
 }  // namespace
 
-SampleShape shape_of(std::span<const double> values) {
-  const auto n = static_cast<double>(values.size());
-  SampleShape shape;
-  for (const double value : values) shape.mean += value / n;
-  double squares = 0.0, cubes = 0.0;
-  for (const double value : values) {
-    const double d = value - shape.mean;
-    squares += d * d;
-    cubes += d * d * d;
-  }
-  if (squares > 0.0) shape.acceleration = cubes / (6.0 * squares * std::sqrt(squares));
-  return shape;
-}
-
 std::size_t bootstrap_replicates(std::size_t runs) {
   return std::clamp(kMostDraws / std::max<std::size_t>(runs, 1), kFewestReplicates,
                     kMostReplicates);

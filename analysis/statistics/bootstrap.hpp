@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/statistics/nees_bounds.hpp"
+#include "analysis/statistics/interval.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -9,17 +9,6 @@
 #include <vector>
 
 namespace montecarta::analysis {
-
-/// Mean of a sample, and skewness divided by 6 sqrt(n), the rate at which the spread of a mean
-/// changes with the mean.
-struct SampleShape {
-  double mean = 0.0;
-  double acceleration = 0.0;
-};
-
-/// Mean and acceleration of BCa (STATISTICS 6) of finite values; the acceleration is 0 if all are
-/// equal.
-SampleShape shape_of(std::span<const double> values);
 
 /// Replicates of a bootstrap over `runs`: 2000, and fewer where there are so many runs that
 /// replicates hardly differ.

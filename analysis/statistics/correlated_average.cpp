@@ -2,6 +2,7 @@
 #include "analysis/statistics/correlated_average.hpp"
 
 #include "analysis/statistics/distributions.hpp"
+#include "analysis/statistics/nees_bounds.hpp"
 #include "engine/errors.hpp"
 
 #include <Eigen/Eigenvalues>

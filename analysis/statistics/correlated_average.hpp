@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/statistics/nees_bounds.hpp"
+#include "analysis/statistics/interval.hpp"
 
 #include <cstddef>
 #include <span>

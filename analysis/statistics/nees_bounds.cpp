@@ -2,6 +2,7 @@
 #include "analysis/statistics/nees_bounds.hpp"
 
 #include "analysis/statistics/distributions.hpp"
+#include "analysis/statistics/interval.hpp"
 #include "analysis/statistics/run_mean.hpp"
 #include "engine/errors.hpp"
 
@@ -12,12 +13,6 @@
 #include <string>
 
 namespace montecarta::analysis {
-
-std::vector<double> ends_of(const std::vector<Interval>& intervals, double Interval::*end) {
-  std::vector<double> ends;
-  for (const Interval& interval : intervals) ends.push_back(interval.*end);
-  return ends;
-}
 
 Interval nees_bounds(std::uint64_t runs, std::uint64_t dimension, double level) {
   if (runs == 0 || dimension == 0) {

@@ -1,23 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "analysis/statistics/interval.hpp"
+
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <tuple>
-#include <vector>
 
 namespace montecarta::analysis {
-
-/// Closed interval of a NEES average [1].
-struct Interval {
-  double lower = 0.0;
-  double upper = 0.0;
-  static constexpr auto members() { return std::tuple(&Interval::lower, &Interval::upper); }
-};
-
-/// One end of each: `&Interval::lower` or `&Interval::upper`.
-std::vector<double> ends_of(const std::vector<Interval>& intervals, double Interval::*end);
 
 /// Interval that holds, with probability `level`, the average NEES of a consistent filter over
 /// `runs` independent runs of an error of `dimension` components: (runs x average) is chi-square

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/statistics/spread.hpp"
 
-#include "analysis/statistics/bootstrap.hpp"
 #include "analysis/statistics/distributions.hpp"
 
 #include <boost/math/distributions/binomial.hpp>
@@ -91,6 +90,20 @@ Spread spread_of(std::span<const double> values) {
   spread.least = least;
   spread.greatest = greatest;
   return spread;
+}
+
+SampleShape shape_of(std::span<const double> values) {
+  const auto n = static_cast<double>(values.size());
+  SampleShape shape;
+  for (const double value : values) shape.mean += value / n;
+  double squares = 0.0, cubes = 0.0;
+  for (const double value : values) {
+    const double d = value - shape.mean;
+    squares += d * d;
+    cubes += d * d * d;
+  }
+  if (squares > 0.0) shape.acceleration = cubes / (6.0 * squares * std::sqrt(squares));
+  return shape;
 }
 
 bool is_heavy_tailed(std::span<const double> values) {

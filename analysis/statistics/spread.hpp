@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/statistics/nees_bounds.hpp"
+#include "analysis/statistics/interval.hpp"
 
 #include <cmath>
 #include <cstddef>
@@ -118,6 +118,17 @@ Interval median_interval(const std::vector<double>& sorted, double level);
 
 /// Spread of `values` in the order of the runs. NaN, except their number, if one of them is NaN.
 Spread spread_of(std::span<const double> values);
+
+/// Mean of a sample, and skewness divided by 6 sqrt(n), the rate at which the spread of a mean
+/// changes with the mean.
+struct SampleShape {
+  double mean = 0.0;
+  double acceleration = 0.0;
+};
+
+/// Mean and acceleration of BCa (STATISTICS 6) of finite values; the acceleration is 0 if all are
+/// equal.
+SampleShape shape_of(std::span<const double> values);
 
 /// Whether the values have such a heavy tail that no interval of their mean is valid (STATISTICS
 /// 6): a single value may decide the mean, or values of that size may not have been drawn yet. True

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The verdict in words: short for a table, and as a sentence with time and component.
-#include "analysis/output/number_text.hpp"
+#include "analysis/statistics/interval.hpp"
 #include "analysis/verdict/verdict.hpp"
+#include "engine/text/number_text.hpp"
 
 #include <algorithm>
 #include <cmath>

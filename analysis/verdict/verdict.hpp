@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/statistics/nees_bounds.hpp"
+#include "analysis/run/study_facts.hpp"
+#include "analysis/statistics/interval.hpp"
 #include "analysis/statistics/spread.hpp"
 #include "analysis/verdict/bets.hpp"
 
@@ -16,25 +17,6 @@
 #include <vector>
 
 namespace montecarta::analysis {
-
-/// A key of the section [study] in the resolved study of a result file; nullopt if it is not given.
-std::optional<std::string> study_setting(const std::string& study_text, std::string_view key);
-
-/// Default margin r: a filter is consistent if the ratio of its NEES to the expected one lies in [1
-/// / r, r].
-inline constexpr double kUsualMargin = 1.1;
-inline constexpr double kLeastMargin = 1.001, kMostMargin = 100.0;
-
-/// study.within of a resolved study, else kUsualMargin. Throws StudyError if it is no number from
-/// kLeastMargin to kMostMargin.
-double margin_in(const std::string& study_text);
-
-/// Value of study.until if cells stop when their verdict is known.
-inline constexpr const char* kUntilVerdict = "verdict";
-
-/// Numbers of runs of the interim analyses in a study of `runs` runs, if its cells stop by verdict;
-/// else empty: the verdict is then taken once.
-std::vector<std::uint64_t> looks_in(const std::string& study_text, std::uint64_t runs);
 
 /// Subject of a family of tests (STATISTICS 5).
 enum class Family {
@@ -66,6 +48,7 @@ inline constexpr std::array kFamilies = {Family::size,
 /// Studies of fewer complete runs are judged by single scans alone: runs say nothing of how much
 /// they vary.
 inline constexpr std::size_t kFewestJudgedRuns = 3;
+
 /// Of fewer runs the intervals are too uncertain themselves to say how many more are needed: a
 /// standard deviation of ten values is known to a quarter.
 inline constexpr std::size_t kFewestRunsOfAPlan = 10;
@@ -76,6 +59,7 @@ constexpr bool is_ratio(Family family) { return family <= Family::scan; }
 
 /// "between runs", for readers.
 std::string name_of(Family family);
+
 /// "between_runs", for files.
 std::string key_of(Family family);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/verdict/whole_error.hpp"
 
+#include "analysis/run/whitened_run.hpp"
 #include "analysis/statistics/distributions.hpp"
 #include "analysis/statistics/run_mean.hpp"
 #include "engine/errors.hpp"
@@ -15,7 +16,9 @@ namespace montecarta::analysis {
 namespace {
 
 constexpr std::size_t kFewestKeptRuns = 50, kMostKeptRuns = 256;
+
 constexpr std::size_t kMostKeptErrors = 8'000'000;  // 64 MB
+
 /// Shorter sequences of errors may be equal by chance, since files have few digits.
 constexpr std::size_t kFewestErrorsOfARepeat = 8;
 

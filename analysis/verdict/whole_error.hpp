@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "analysis/run/whitened_run.hpp"
 #include "analysis/statistics/spread.hpp"
 #include "analysis/verdict/bets.hpp"
 #include "analysis/verdict/run_groups.hpp"
@@ -16,21 +17,6 @@
 #include <vector>
 
 namespace montecarta::analysis {
-
-/// Errors in units of their deviation are cut to this one.
-inline constexpr double kLargestError = 1e30;
-
-/// Errors of one run in units of the covariance that its filter reported.
-struct WhitenedRun {
-  std::size_t dimension = 0;
-  /// {scan, component} L^-1 e, where the covariance is L L'; NaN where it is singular.
-  std::vector<double> whitened;
-  /// {scan, component} Each component divided by its own deviation; NaN where this is 0.
-  std::vector<double> standardised;
-  /// {component} The largest error where the reported deviation is 0; 0 if there is none.
-  std::vector<double> errors_of_exact = {};
-  std::uint64_t number = 0;  ///< of the run
-};
 
 /// Names of the components and times [s] of the scans, for the members of families.
 struct ErrorNames {

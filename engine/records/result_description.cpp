@@ -6,7 +6,7 @@
 #include "engine/records/result_layout.hpp"
 #include "engine/records/run_record.hpp"
 #include "engine/records/seal.hpp"
-#include "engine/visible_text.hpp"
+#include "engine/text/visible_text.hpp"
 
 #include <algorithm>
 #include <array>

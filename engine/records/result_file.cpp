@@ -4,7 +4,7 @@
 #include "engine/errors.hpp"
 #include "engine/records/seal.hpp"
 #include "engine/records/sum_groups.hpp"
-#include "engine/visible_text.hpp"
+#include "engine/text/visible_text.hpp"
 
 #include <algorithm>
 #include <mutex>

@@ -2,7 +2,7 @@
 #include "engine/runs/progress.hpp"
 
 #include "engine/runs/monte_carlo.hpp"
-#include "engine/wrapped_text.hpp"
+#include "engine/text/wrapped_text.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/metrics/study_analysis.hpp"
-#include "analysis/tables/tables.hpp"
-#include "analysis/verdict/verdict.hpp"
+#include "analysis/render/tables/tables.hpp"
+#include "analysis/run/study_facts.hpp"
+#include "analysis/study/study_analysis.hpp"
 #include "engine/errors.hpp"
-#include "engine/wrapped_text.hpp"
+#include "engine/text/wrapped_text.hpp"
 #include "experiments/commands/arguments.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/output_guard.hpp"

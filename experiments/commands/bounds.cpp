@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/statistics/interval.hpp"
 #include "analysis/statistics/nees_bounds.hpp"
 #include "experiments/commands/commands.hpp"
 

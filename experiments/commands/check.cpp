@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/commands/check.hpp"
 
-#include "analysis/metrics/stored_sums.hpp"
-#include "analysis/output/text_table.hpp"
+#include "analysis/study/stored_sums.hpp"
+#include "analysis/study/text_table.hpp"
 #include "engine/records/fingerprint.hpp"
 #include "engine/records/posix_file.hpp"
 #include "engine/records/result_description.hpp"
 #include "engine/records/run_record.hpp"
 #include "engine/runs/progress.hpp"
-#include "engine/wrapped_text.hpp"
+#include "engine/text/wrapped_text.hpp"
 #include "experiments/commands/arguments.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/text/words.hpp"

@@ -3,7 +3,7 @@
 
 #include "engine/errors.hpp"
 #include "engine/records/provenance.hpp"
-#include "engine/wrapped_text.hpp"
+#include "engine/text/wrapped_text.hpp"
 #include "experiments/commands/output_guard.hpp"
 #include "experiments/text/words.hpp"
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/metrics/study_analysis.hpp"
-#include "analysis/page/html.hpp"
+#include "analysis/render/page/html.hpp"
+#include "analysis/run/study_facts.hpp"
+#include "analysis/study/study_analysis.hpp"
 #include "analysis/verdict/verdict.hpp"
 #include "engine/errors.hpp"
-#include "engine/wrapped_text.hpp"
+#include "engine/text/wrapped_text.hpp"
 #include "experiments/commands/arguments.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/stored_result.hpp"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/output/text_table.hpp"
+#include "analysis/study/text_table.hpp"
 #include "engine/records/posix_file.hpp"
 #include "engine/records/seal.hpp"
-#include "engine/wrapped_text.hpp"
+#include "engine/text/wrapped_text.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/stored_result.hpp"
 

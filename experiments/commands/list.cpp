@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/metrics/cell_analysis.hpp"
+#include "analysis/study/score_table.hpp"
 #include "engine/errors.hpp"
 #include "engine/records/columns.hpp"
-#include "engine/wrapped_text.hpp"
+#include "engine/text/wrapped_text.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/external/external_filter.hpp"
 #include "experiments/files/files.hpp"

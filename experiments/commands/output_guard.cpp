@@ -2,7 +2,7 @@
 #include "experiments/commands/output_guard.hpp"
 
 #include "engine/errors.hpp"
-#include "engine/visible_text.hpp"
+#include "engine/text/visible_text.hpp"
 
 #include <fstream>
 #include <system_error>

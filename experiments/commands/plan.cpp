@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/output/number_text.hpp"
-#include "analysis/output/text_table.hpp"
+#include "analysis/run/study_facts.hpp"
 #include "analysis/statistics/nees_bounds.hpp"
-#include "analysis/verdict/verdict.hpp"
-#include "engine/wrapped_text.hpp"
+#include "analysis/study/text_table.hpp"
+#include "engine/text/number_text.hpp"
+#include "engine/text/wrapped_text.hpp"
 #include "experiments/commands/commands.hpp"
 
 #include <cmath>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/report.hpp"
+#include "analysis/render/report.hpp"
 
-#include "analysis/output/gnuplot.hpp"
-#include "analysis/verdict/verdict.hpp"
+#include "analysis/render/figures/gnuplot.hpp"
+#include "analysis/run/study_facts.hpp"
 #include "experiments/commands/arguments.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/stored_result.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/output/text_table.hpp"
+#include "analysis/study/text_table.hpp"
 #include "engine/errors.hpp"
 #include "engine/records/result_layout.hpp"
 #include "engine/records/sum_groups.hpp"

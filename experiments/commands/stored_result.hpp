@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/output/text_table.hpp"
+#include "analysis/study/text_table.hpp"
 #include "engine/records/result_file.hpp"
 #include "engine/runs/progress.hpp"
 #include "experiments/commands/arguments.hpp"

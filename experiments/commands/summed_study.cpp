@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/commands/summed_study.hpp"
 
-#include "analysis/metrics/stored_sums.hpp"
+#include "analysis/study/stored_sums.hpp"
 #include "engine/errors.hpp"
 #include "engine/records/open_result.hpp"
 #include "engine/records/posix_file.hpp"

@@ -2,7 +2,7 @@
 #include "engine/errors.hpp"
 #include "engine/records/fingerprint.hpp"
 #include "engine/runs/recompute.hpp"
-#include "engine/wrapped_text.hpp"
+#include "engine/text/wrapped_text.hpp"
 #include "experiments/commands/arguments.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/stored_result.hpp"

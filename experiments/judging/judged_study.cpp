@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/judging/judged_study.hpp"
 
-#include "analysis/metrics/nees.hpp"
+#include "analysis/run/nees.hpp"
 #include "engine/errors.hpp"
 #include "engine/records/fingerprint.hpp"
 #include "engine/records/posix_file.hpp"

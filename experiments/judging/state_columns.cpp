@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/judging/state_columns.hpp"
 
-#include "analysis/metrics/nees.hpp"
+#include "analysis/run/nees.hpp"
 #include "engine/errors.hpp"
 #include "engine/numbers/angle.hpp"
 #include "experiments/files/files.hpp"

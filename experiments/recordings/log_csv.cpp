@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/recordings/log_csv.hpp"
 
-#include "analysis/output/frame.hpp"
+#include "analysis/study/frame.hpp"
 #include "engine/errors.hpp"
 #include "experiments/files/files.hpp"
 #include "experiments/text/words.hpp"

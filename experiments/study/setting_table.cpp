@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/run/study_facts.hpp"
 #include "analysis/verdict/verdict.hpp"
 #include "engine/records/columns.hpp"
-#include "engine/wrapped_text.hpp"
+#include "engine/text/wrapped_text.hpp"
 #include "experiments/study/settings.hpp"
 #include "experiments/text/words.hpp"
 #include "filters/models/sensor.hpp"

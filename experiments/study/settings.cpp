@@ -3,8 +3,8 @@
 
 #include "engine/errors.hpp"
 #include "engine/numbers/angle.hpp"
-#include "engine/visible_text.hpp"
-#include "engine/wrapped_text.hpp"
+#include "engine/text/visible_text.hpp"
+#include "engine/text/wrapped_text.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>

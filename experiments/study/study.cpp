@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/study/study.hpp"
 
-#include "analysis/comparison/study_comparison.hpp"
-#include "analysis/metrics/cell_sums.hpp"
-#include "analysis/metrics/study_analysis.hpp"
+#include "analysis/run/study_facts.hpp"
+#include "analysis/study/cell_sums.hpp"
+#include "analysis/study/study_analysis.hpp"
+#include "analysis/study/study_comparison.hpp"
 #include "analysis/verdict/verdict.hpp"
 #include "engine/errors.hpp"
 #include "engine/records/result_file.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/metrics/cell_analysis.hpp"
+#include "analysis/study/score_table.hpp"
 #include "engine/core/plan.hpp"
 #include "experiments/recordings/drive_log.hpp"
 #include "experiments/study/cell_spec.hpp"

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Law: other readers of a result file find the ANEES that we find.
-#include "analysis/output/frame.hpp"
+#include "analysis/statistics/interval.hpp"
 #include "analysis/statistics/nees_bounds.hpp"
+#include "analysis/study/frame.hpp"
 #include "tests/analysis/synthetic_result.hpp"
 #include "tests/doubles/csv_table.hpp"
 #include "tests/doubles/reader_program.hpp"

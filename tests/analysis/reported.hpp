@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/metrics/metric.hpp"
-#include "analysis/metrics/study_analysis.hpp"
+#include "analysis/study/metric.hpp"
+#include "analysis/study/study_analysis.hpp"
 
 #include <algorithm>
 #include <string>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Damaged result files: refused with the name of the file, or analysed to the end.
-#include "analysis/metrics/study_analysis.hpp"
-#include "analysis/page/replay/replay.hpp"
-#include "analysis/tables/tables.hpp"
+#include "analysis/render/page/replay/replay.hpp"
+#include "analysis/render/tables/tables.hpp"
+#include "analysis/study/study_analysis.hpp"
 #include "engine/errors.hpp"
 #include "engine/records/merge.hpp"
 #include "engine/records/result_layout.hpp"

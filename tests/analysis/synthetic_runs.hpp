@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/data/run_rows.hpp"
-#include "analysis/metrics/measured_run.hpp"
+#include "analysis/run/run_criteria.hpp"
+#include "analysis/run/run_rows.hpp"
 #include "engine/numbers/angle.hpp"
 #include "engine/random/stream.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/visible_text.hpp"
+#include "engine/text/visible_text.hpp"
 
 #include <gtest/gtest.h>
 

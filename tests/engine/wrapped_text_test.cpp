@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/wrapped_text.hpp"
+#include "engine/text/wrapped_text.hpp"
 
 #include <gtest/gtest.h>
 

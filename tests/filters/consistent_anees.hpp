@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/output/number_text.hpp"
+#include "analysis/statistics/interval.hpp"
 #include "analysis/statistics/nees_bounds.hpp"
+#include "engine/text/number_text.hpp"
 #include "tests/filters/small_world.hpp"
 
 #include <Eigen/Cholesky>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/metrics/references.hpp"
-#include "analysis/tables/tables.hpp"
+#include "analysis/render/tables/tables.hpp"
+#include "analysis/run/reference_scores.hpp"
+#include "analysis/study/reference_sums.hpp"
 #include "engine/records/h5.hpp"
 #include "tests/analysis/recorded_result.hpp"
 #include "tests/analysis/reported.hpp"
@@ -30,6 +31,20 @@ const StudyAnalysis& recorded_study() {
     return analyze(ResultFile(folder / "out.h5"));
   }();
   return study;
+}
+
+/// The table of this name in the section on references; without rows where there is none.
+TextTable table_of(const StudyAnalysis& study, const std::string& name) {
+  for (const auto& one : reported_section(study, "references").all<Section::Table>()) {
+    if (one.name == name) return one.table;
+  }
+  return {};
+}
+TextTable reference_table(const StudyAnalysis& study) { return table_of(study, "reference"); }
+TextTable baseline_table(const StudyAnalysis& study) { return table_of(study, "baseline"); }
+TextTable map_table(const StudyAnalysis& study) { return table_of(study, "map"); }
+std::vector<std::string> reference_notes(const StudyAnalysis& study) {
+  return reported_notes(study, "references");
 }
 
 std::vector<std::string> texts_of(const TextTable& table) {
@@ -169,8 +184,10 @@ std::vector<std::string> names_of(const std::vector<Figure>& figures) {
 }
 
 std::vector<Figure> reference_figures(const StudyAnalysis& study) {
-  std::vector<Figure> figures = {reference_error_figure(study), map_size_figure(study)};
-  std::erase_if(figures, [](const Figure& figure) { return figure.data.empty(); });
+  std::vector<Figure> figures;
+  for (const Figure& figure : figures_of(study)) {
+    if (figure.name == "reference_error" || figure.name == "map_size") figures.push_back(figure);
+  }
   return figures;
 }
 
@@ -189,9 +206,10 @@ TEST(ReferenceFigures, SpreadManyCellsOverAPanelForEachNumberOfParticles) {
     cells.push_back(cell_of(filter + "_m3", filter, 3, 2.0));
     if (filter != "b") cells.push_back(cell_of(filter + "_m20", filter, 20, 3.0));
   }
-  EXPECT_EQ(reference_error_figure(study_of(cells)).data.size(), 1u);  // eight are told apart
+  EXPECT_EQ(reported_figure(study_of(cells), "reference_error").data.size(),
+            1u);  // eight are told apart
   cells.push_back(cell_of("e_m20", "e", 20, 5.0));
-  const Figure figure = reference_error_figure(study_of(cells));
+  const Figure figure = reported_figure(study_of(cells), "reference_error");
   ASSERT_EQ(figure.data.size(), 2u);
   EXPECT_EQ(figure.data[0].name, "reference_error_m3.csv");
   std::vector<std::string> names;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/metrics/study_analysis.hpp"
 #include "analysis/statistics/spread.hpp"
+#include "analysis/study/study_analysis.hpp"
 #include "tests/analysis/reported.hpp"
 #include "tests/doubles/matchers.hpp"
 

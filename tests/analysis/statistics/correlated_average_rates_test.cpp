@@ -3,6 +3,7 @@
 // fixes). `MONTECARTA_STUDIES=4000 build/analysis_tests --gtest_filter='*SlowDrive*:*Several*'`
 // prints the whole tables; without the variable it is a few lines.
 #include "analysis/statistics/correlated_average.hpp"
+#include "analysis/statistics/nees_bounds.hpp"
 #include "engine/random/stream.hpp"
 #include "tests/analysis/verdict_studies.hpp"
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/statistics/correlated_average.hpp"
 
+#include "analysis/statistics/nees_bounds.hpp"
 #include "engine/random/stream.hpp"
 
 #include <boost/math/distributions/chi_squared.hpp>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Intervals of means that are shown are to be right, also of the values that diverging filters
 // have; where none can be, the study says so.
-#include "analysis/metrics/cell_sums.hpp"
 #include "analysis/statistics/bootstrap.hpp"
 #include "analysis/statistics/spread.hpp"
+#include "analysis/study/cell_sums.hpp"
 #include "engine/random/stream.hpp"
 #include "tests/analysis/verdict_studies.hpp"
 

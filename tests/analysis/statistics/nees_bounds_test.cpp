@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/statistics/nees_bounds.hpp"
 
+#include "analysis/statistics/interval.hpp"
 #include "engine/errors.hpp"
 #include "tests/analysis/verdict_studies.hpp"
 #include "tests/doubles/csv_table.hpp"

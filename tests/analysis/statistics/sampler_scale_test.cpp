@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/statistics/sampler_scale.hpp"
 
-#include "analysis/metrics/nees.hpp"
+#include "analysis/run/nees.hpp"
 #include "engine/random/stream.hpp"
 
 #include <boost/math/distributions/chi_squared.hpp>

@@ -27,15 +27,16 @@ std::vector<double> pits(std::size_t n, double inflation, double bias, std::uint
   return values;
 }
 
-constexpr std::uint64_t kStudies = 2000;
+constexpr std::uint64_t kUniformStudies = 2000;
 
 /// Share of studies with this verdict.
 double share_of(Calibration verdict, std::size_t n, double inflation, double bias) {
   const EcdfBand band = ecdf_band(n, 0.95);
   double found = 0.0;
-  for (std::uint64_t study = 0; study < kStudies; ++study) {
+  for (std::uint64_t study = 0; study < kUniformStudies; ++study) {
     const auto values = pits(n, inflation, bias, study);
-    if (judge_uniformity(values, band, PitOf::error).verdict == verdict) found += 1.0 / kStudies;
+    if (judge_uniformity(values, band, PitOf::error).verdict == verdict)
+      found += 1.0 / kUniformStudies;
   }
   return found;
 }
@@ -47,7 +48,7 @@ TEST(Uniformity, SlowRaisesFalseAlarmsAtTheStatedLevel) {
     EXPECT_LE(rate, 0.05);
     EXPECT_GT(rate, 0.045) << "the band is no wider than whole counts make it";
     EXPECT_NEAR(1.0 - share_of(Calibration::calibrated, n, 1.0, 0.0), rate,
-                4.0 * std::sqrt(rate * (1.0 - rate) / kStudies));
+                4.0 * std::sqrt(rate * (1.0 - rate) / kUniformStudies));
   }
 }
 
@@ -56,15 +57,15 @@ TEST(Uniformity, SlowRaisesFalseAlarmsAtTheStatedLevel) {
 TEST(Uniformity, SlowHasPValuesThatAreUniform) {
   const EcdfBand band = ecdf_band(100, 0.95);
   std::map<double, double> shares = {{0.02, 0.0}, {0.1, 0.0}, {0.5, 0.0}};
-  for (std::uint64_t study = 0; study < kStudies; ++study) {
+  for (std::uint64_t study = 0; study < kUniformStudies; ++study) {
     const auto values = pits(100, 1.0, 0.0, study);
     const Uniformity found = judge_uniformity(values, band, PitOf::error);
     const double p_here = p_value(found);
-    for (auto& [p, share] : shares) share += p_here <= p ? 1.0 / kStudies : 0.0;
+    for (auto& [p, share] : shares) share += p_here <= p ? 1.0 / kUniformStudies : 0.0;
     EXPECT_EQ(p_here <= 1.0 - band.joint, found.verdict != Calibration::calibrated);
   }
   for (const auto& [p, share] : shares) {
-    EXPECT_NEAR(share, p, 4.0 * std::sqrt(p * (1.0 - p) / kStudies));
+    EXPECT_NEAR(share, p, 4.0 * std::sqrt(p * (1.0 - p) / kUniformStudies));
   }
 }
 

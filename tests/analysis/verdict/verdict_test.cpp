@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/verdict/verdict.hpp"
 
+#include "analysis/run/study_facts.hpp"
 #include "engine/errors.hpp"
 #include "tests/doubles/matchers.hpp"
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/verdict/whole_error.hpp"
 
-#include "analysis/metrics/nees.hpp"
+#include "analysis/run/nees.hpp"
+#include "analysis/run/whitened_run.hpp"
+#include "analysis/statistics/interval.hpp"
 #include "analysis/statistics/nees_bounds.hpp"
 #include "engine/errors.hpp"
 #include "tests/analysis/verdict_studies.hpp"

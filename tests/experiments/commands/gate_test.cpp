@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/metrics/study_analysis.hpp"
+#include "analysis/statistics/interval.hpp"
 #include "analysis/statistics/nees_bounds.hpp"
+#include "analysis/study/study_analysis.hpp"
 #include "engine/random/stream.hpp"
 #include "engine/records/result_file.hpp"
 #include "tests/doubles/matchers.hpp"

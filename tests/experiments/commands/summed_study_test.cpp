@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Studies that store sums over groups of runs in place of the runs.
-#include "analysis/metrics/stored_sums.hpp"
+#include "analysis/study/stored_sums.hpp"
 #include "engine/records/result_file.hpp"
 #include "engine/records/sum_groups.hpp"
 #include "tests/experiments/commands/program.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Law: one estimator has one ANEES if its estimates are judged, if it is a cell, and if it is a
 // cell on recorded drives with the truth as reference.
-#include "analysis/metrics/study_analysis.hpp"
+#include "analysis/study/study_analysis.hpp"
 #include "experiments/recordings/log_csv.hpp"
 #include "experiments/text/words.hpp"
 #include "tests/doubles/csv_table.hpp"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/judging/error_convention.hpp"
 
-#include "analysis/metrics/imported_estimates.hpp"
-#include "analysis/metrics/nees.hpp"
+#include "analysis/run/nees.hpp"
+#include "analysis/verdict/convention_hints.hpp"
 #include "engine/numbers/angle.hpp"
 #include "engine/random/stream.hpp"
 #include "experiments/commands/commands.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/metrics/map_errors.hpp"
-#include "analysis/metrics/references.hpp"
+#include "analysis/run/map_scores.hpp"
+#include "analysis/run/reference_scores.hpp"
 #include "engine/core/slam_filter.hpp"
 #include "experiments/study/make_plan.hpp"
 #include "experiments/study/study.hpp"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/study/make_plan.hpp"
 
+#include "analysis/run/study_facts.hpp"
 #include "analysis/verdict/verdict.hpp"
 #include "engine/errors.hpp"
 #include "experiments/recordings/log_csv.hpp"

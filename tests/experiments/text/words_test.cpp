@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/text/words.hpp"
 
-#include "analysis/output/text_table.hpp"
+#include "analysis/study/text_table.hpp"
 #include "engine/random/stream.hpp"
 #include "engine/records/posix_file.hpp"
 #include "tests/doubles/complaint.hpp"

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/run/criteria_of.hpp"
+
+#include "analysis/run/imported_state.hpp"
+#include "analysis/run/run_reader.hpp"
+#include "analysis/run/simulated_world.hpp"
+#include "analysis/run/study_facts.hpp"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace montecarta::analysis {
+namespace {
+
+bool says(const ResultFile& file, const char* setting, const char* value) {
+  return std::ranges::count(file.scenario(), TextPairs::value_type{setting, value}) > 0;
+}
+
+/// Only then are estimates drawn as filters believe; else no filter can be calibrated.
+bool noise_is_matched(const ResultFile& file) {
+  return file.has_truth() && says(file, "noise", "matched");
+}
+
+std::vector<double> true_headings(const ResultFile& file, std::size_t run) {
+  std::vector<double> truth(3 * file.times().size()), headings;
+  file.read_truth(run, truth);
+  for (std::size_t k = 2; k < truth.size(); k += 3) headings.push_back(truth[k]);
+  return headings;
+}
+
+bool are_true_headings_the_same(const ResultFile& file) {
+  std::vector<double> first;
+  for (std::size_t run = 0; file.has_truth() && run < file.runs().size(); ++run) {
+    const std::vector<double> headings = true_headings(file, run);
+    if (run == 0) first = headings;
+    if (headings != first) return false;
+  }
+  return true;
+}
+
+/// The scenario tells how the truth arises, even in a shard of one run. Files whose scenario does
+/// not, such as those of imported estimates, have all of their runs.
+ErrorFrame error_frame_of(const ResultFile& file) {
+  if (noise_is_matched(file)) return ErrorFrame::of_estimate;
+  const bool is_same = says(file, "noise", "measured-control") || are_true_headings_the_same(file);
+  return is_same ? ErrorFrame::of_truth : ErrorFrame::of_estimate;
+}
+
+/// Criteria for the maps of a drive with known truth; recorded drives are judged by their beacons.
+MapCriteria map_criteria_of(const ResultFile& file) {
+  MapCriteria criteria;
+  if (!file.has_truth()) return criteria;
+  criteria.known = !file.landmarks().empty();
+  if (const auto world = simulated_world_of(file)) criteria.view = world->view;
+  criteria.identities_known = says(file, "association.kind", "known");
+  return criteria;
+}
+
+DriveCriteria criteria_of_drive(const RunDrive& drive) {
+  DriveCriteria criteria{drive.scan_times, {}, {}};
+  for (const ReferencePath& path : drive.references) {
+    criteria.references.emplace_back(path, drive.scan_times, drive.start);
+    if (path.covariance.empty()) continue;
+    criteria.judged_fixes.emplace_back(path, drive.scan_times, drive.start);
+  }
+  return criteria;
+}
+
+}  // namespace
+
+RunCriteria criteria_of(const ResultFile& file, double level, double within) {
+  RunCriteria criteria{.times = file.scan_times(),
+                       .level = level,
+                       .within = within,
+                       .references = {},
+                       .beacons = {},
+                       .map = map_criteria_of(file),
+                       .joint_scans = file.description().joint_scans,
+                       .frame = error_frame_of(file),
+                       .calibrates = noise_is_matched(file),
+                       .looks = looks_in(file.study_text(), file.study_runs()),
+                       .share_of_runs = static_cast<double>(file.runs().size()) /
+                                        static_cast<double>(file.study_runs()),
+                       .components = {kErrorComponents.begin(), kErrorComponents.end()}};
+  const ImportedState imported =
+      file.cells().empty() ? ImportedState() : imported_state(file.cells().front());
+  if (imported.is_imported()) criteria.components = imported.components;
+  for (const ReferencePath& path : file.references()) {
+    criteria.references.emplace_back(path, file.times(), file.description().start);
+    if (path.covariance.empty()) continue;
+    criteria.judged_fixes.emplace_back(path, file.scan_times(), file.description().start);
+  }
+  for (std::size_t run = 0; run < file.description().drives.size(); ++run) {
+    criteria.drives.push_back(criteria_of_drive(drive_of_run(file, run)));
+  }
+  if (!criteria.drives.empty()) {
+    criteria.references = criteria.drives.front().references;
+    criteria.judged_fixes = criteria.drives.front().judged_fixes;
+  }
+  criteria.beacons = file.landmarks();
+  return criteria;
+}
+
+}  // namespace montecarta::analysis

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/run/run_criteria.hpp"
+#include "engine/records/result_file.hpp"
+
+namespace montecarta::analysis {
+
+/// The criteria by which a file, which must outlive them, is judged at `level`.
+RunCriteria criteria_of(const ResultFile& file, double level, double within = kUsualMargin);
+
+}  // namespace montecarta::analysis

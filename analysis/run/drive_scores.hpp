@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/run/nees.hpp"
+#include "analysis/run/path_at_fixes.hpp"
+#include "analysis/run/run_rows.hpp"
+#include "analysis/statistics/correlated_average.hpp"
+#include "analysis/statistics/spread.hpp"
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <tuple>
+#include <vector>
+
+namespace montecarta::analysis {
+
+/// The longest gap [s] between the scans before and after a fix that is judged, because mean and
+/// covariance are interpolated linearly between them.
+inline constexpr double kLongestScanGap = 1.0;
+
+/// Errors of one run at the fixes of a reference with known errors (STATISTICS 20).
+struct FixErrors {
+  /// {component}{fix judged} in units of P + R, the covariance of the filter plus that of the fix.
+  /// The sum of squares is the NEES; for particle filters it is on the scale of the chi-square.
+  VectorSeries whitened;
+  VectorSeries by_reference;  ///< likewise in units of R alone
+  std::vector<double> nees;   ///< {fix judged}
+  std::vector<double> times;  ///< [s] of the fixes judged
+  std::size_t in_gaps = 0;    ///< fixes left out: scans around lie farther apart
+  std::size_t undefined = 0;  ///< fixes left out: no finite covariance, or too few draws
+};
+
+/// Errors at `fixes`, which belong to the scans at `scan_times` [s], by the leading moments of
+/// `rows` of a filter with `particles` (0: none). Empty if no covariance is stored or if the
+/// reference does not measure the block.
+FixErrors errors_at_fixes(const PathAtFixes& fixes, std::span<const double> scan_times,
+                          const RunRows& rows, std::size_t particles, ErrorBlock block);
+
+/// Scores of one run on one drive by a reference with known errors (STATISTICS 20).
+struct DriveScores {
+  /// {ErrorBlock} NEES at the fixes; effective_samples 0 where the block is not measured.
+  std::array<CorrelatedAverage, kErrorBlocks.size()> blocks;
+  /// {ErrorBlock} whitened errors; empty where the block is not measured.
+  std::array<VectorSeries, kErrorBlocks.size()> errors;
+  ErrorBlock leading = ErrorBlock::pose;  ///< the pose where there are headings, else the position
+  double median = kNaN;                   ///< of the leading NEES, over that of a chi-square
+  double seconds = 0.0;                   ///< from the first fix judged to the last
+  std::size_t fixes = 0;                  ///< judged
+  std::size_t in_gaps = 0;    ///< left out: scans around lie farther apart than kLongestScanGap
+  std::size_t undefined = 0;  ///< left out: no finite covariance, or too few draws
+  /// The estimate is the reference itself: at no fix it differs by a thousandth of the fix's sigma.
+  bool is_the_reference = false;
+  /// Errors are shown to be smaller than the fixes' own: their sigmas are too large, or the
+  /// reference was an input of the filter.
+  bool is_below_reference = false;
+
+  static constexpr auto members() {
+    using Scores = DriveScores;
+    return std::tuple(&Scores::blocks, &Scores::errors, &Scores::leading, &Scores::median,
+                      &Scores::seconds, &Scores::fixes, &Scores::in_gaps, &Scores::undefined,
+                      &Scores::is_the_reference, &Scores::is_below_reference);
+  }
+  const CorrelatedAverage& leads() const { return blocks[static_cast<std::size_t>(leading)]; }
+};
+
+/// Scores of all blocks, with intervals at `level`; the other parameters are those of
+/// errors_at_fixes().
+DriveScores drive_scores(const PathAtFixes& fixes, std::span<const double> scan_times,
+                         const RunRows& rows, std::size_t particles, double level);
+
+}  // namespace montecarta::analysis

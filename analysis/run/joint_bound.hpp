@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/statistics/sums.hpp"
+#include "engine/core/drive.hpp"
+#include "engine/core/pose.hpp"
+#include "filters/models/ackermann.hpp"
+#include "filters/models/range_bearing.hpp"
+#include "filters/models/sensor.hpp"
+#include "filters/models/vehicle.hpp"
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace montecarta::analysis {
+
+/// The Cramer-Rao bound on pose and landmarks together, as a covariance that is propagated along a
+/// known path: the recursion of a Kalman filter with all Jacobians at the truth. A landmark is
+/// unknown before its first observation; if one detection does not fix it, its standard deviation
+/// is a kilometre. The pose is known exactly at the start.
+class JointBound {
+ public:
+  /// Room for all `landmarks`; nothing is allocated later. `control_noise`: of the vehicle,
+  /// `observation_variance`: of the components of the sensor.
+  JointBound(std::size_t landmarks, const Vehicle& vehicle, const ControlNoise& control_noise,
+             const Eigen::Vector2d& observation_variance, const Sensor& sensor = {});
+
+  /// One control step from the true `pose`; returns the pose after it.
+  Pose move(const Pose& pose, const Control& control, double duration);
+  /// A scan from the true `pose` that detects `landmarks`, true positions with their identities.
+  /// False if the noise is too small for the computation; the bound is unusable then.
+  struct Seen {
+    std::size_t identity = 0;
+    Point point;
+  };
+  [[nodiscard]] bool scan(const Pose& pose, std::span<const Seen> landmarks);
+
+  const Eigen::Matrix3d& pose() const { return pose_; }
+  /// [m^2] Mean squared position error over the landmarks that the detections locate; NaN if there
+  /// are none.
+  double mean_map_variance() const;
+
+ private:
+  void finish_motion();
+  [[nodiscard]] bool correct(const Pose& pose, std::span<const Seen> landmarks);
+  void append(const Pose& pose, const Seen& landmark);
+  void append_unknown(const Seen& landmark);
+  Eigen::VectorXd column(Eigen::Index j) const;
+  Eigen::Index& row_of(std::size_t identity) { return row_[identity]; }
+
+  Vehicle vehicle_;
+  ControlNoise control_noise_;
+  Eigen::Vector2d observation_variance_;
+  Sensor sensor_;
+  Eigen::Matrix3d pose_ = Eigen::Matrix3d::Zero();  ///< symmetric
+  double pending_x_heading_ = 0.0;                  ///< [m/rad] of Fx since the last scan
+  double pending_y_heading_ = 0.0;                  ///< [m/rad]
+  Eigen::MatrixXd joint_;                           ///< lower triangle; its pose block is in pose_
+  Eigen::Index size_ = 3;                           ///< rows in use
+  std::vector<Eigen::Index> row_;                   ///< of each landmark; 0: never seen
+};
+
+}  // namespace montecarta::analysis

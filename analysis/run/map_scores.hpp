@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/run/reference_scores.hpp"
+#include "analysis/run/run_rows.hpp"
+#include "analysis/statistics/spread.hpp"
+#include "filters/models/field_of_view.hpp"
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace montecarta::analysis {
+
+/// Column of each row in the assignment of least total cost. `cost` is finite, with no more rows
+/// than columns. Shortest augmenting paths (Jonker and Volgenant 1987): at most cubic, and
+/// quadratic if most rows have a cheapest column of their own, as in a good map.
+std::vector<std::size_t> cheapest_assignment(const Eigen::MatrixXd& cost);
+
+/// A landmark farther than this [m] from its true position counts as missed and spurious.
+inline constexpr double kGospaCutoff = 5.0;
+
+/// Distance between a map and the truth, independent of identities (Rahmathullah, Garcia-Fernandez,
+/// Svensson 2017; alpha = 2, p = 2): distance^2 = localisation^2 + cutoff^2 / 2 (missed +
+/// spurious).
+struct Gospa {
+  double distance = 0.0;      ///< [m]
+  double localisation = 0.0;  ///< [m] root of the sum of squared errors of the pairs
+  double missed = 0.0;        ///< [1] true landmarks without a partner
+  double spurious = 0.0;      ///< [1] landmarks of the map without a partner
+};
+
+/// Pairs `map` [m] and `truth` [m] at the least distance. A point that is not finite has no
+/// partner.
+Gospa gospa(std::span<const Eigen::Vector2d> map, std::span<const Eigen::Vector2d> truth,
+            double cutoff = kGospaCutoff);
+
+/// Facts by which the final maps of a study are judged.
+struct MapCriteria {
+  bool known = false;               ///< whether the true positions are known
+  std::optional<FieldOfView> view;  ///< of the sensor; without it all count as seen
+  bool identities_known = false;    ///< rows of a map are identities of the world
+};
+
+/// One landmark of one run; NaN where it is not in the map.
+struct LandmarkScore {
+  double squared_error = kNaN;  ///< [m^2]
+  double nees = kNaN;           ///< [1] of two components
+  bool in_map = false;
+};
+
+/// The final map of a run against the true landmarks that came into view in it.
+struct MapScores {
+  Gospa gospa;
+  double rms = kNaN;                     ///< [m] over the landmarks in the map;
+                                         ///< by identity: NaN where unknown
+  double nees = kNaN;                    ///< [1] mean over those with a NEES
+  std::size_t undefined = 0;             ///< landmarks in the map that have no NEES
+  std::vector<LandmarkScore> landmarks;  ///< {landmark}; empty where identities are unknown
+};
+
+/// `landmarks`: true positions [m]. `path`: true poses at scans {scan, 3} [m, m, rad].
+MapScores map_scores(const FinalMap& map, const MapCriteria& criteria,
+                     std::span<const Eigen::Vector2d> landmarks, std::span<const double> path);
+
+/// A surveyed beacon is found where an aligned landmark lies within this distance [m].
+inline constexpr double kFoundWithin = 1.0;
+
+/// The final map of a run compared with surveyed beacons. NaN if no beacon was found.
+struct BeaconScores {
+  double found = 0.0;         ///< [1] beacons
+  double rms = kNaN;          ///< [m] of those found
+  double aligned_rms = kNaN;  ///< [m] of those found, aligned
+};
+
+/// Pairs each beacon [m] with the nearest landmark of `map` [m] after `alignment`, the motion that
+/// aligns the path with its reference, because the start of a drive is not known exactly. A
+/// landmark counts for one beacon only, the nearer pair first.
+BeaconScores beacon_scores(std::span<const Eigen::Vector2d> map,
+                           std::span<const Eigen::Vector2d> beacons, const RigidMotion& alignment);
+
+}  // namespace montecarta::analysis

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/core/drive.hpp"
+#include "engine/core/pose.hpp"
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace montecarta::analysis {
+
+/// The fixes of a reference that lie within a drive's time span, and where each lies between the
+/// rows of an estimated path. The same for all runs of all cells; any number of threads may use it.
+class PathAtFixes {
+ public:
+  /// `times` [s] of a path's rows, increasing; the vehicle stands at `start` at time 0. Fixes
+  /// before that or behind the last row are not used.
+  PathAtFixes(const ReferencePath& reference, std::span<const double> times, const Pose& start);
+
+  const std::string& name() const { return used_.name; }
+  /// [s] of each fix that is used.
+  const std::vector<double>& times() const { return used_.time; }
+  /// [m]
+  const std::vector<Eigen::Vector2d>& positions() const { return used_.position; }
+  /// [rad]; empty where the reference has none.
+  const std::vector<double>& headings() const { return used_.heading; }
+
+  /// (m, m, rad)^2 of each fix; empty if unknown.
+  const std::vector<Eigen::Matrix3d>& covariances() const { return used_.covariance; }
+
+  /// Between row `next` - 1 (the start for 0) and row `next`.
+  struct Place {
+    std::size_t next = 0;
+    double share = 0.0;  ///< of the way, in [0, 1]
+  };
+  /// The place of each fix.
+  const std::vector<Place>& places() const { return places_; }
+  /// Whether the start was taken from a fix: whether the two agree to a micrometre.
+  bool has_start() const;
+
+  /// `path` {row, 3} [m, m, rad], linearly in time at every fix; the heading turns the shorter way.
+  std::vector<Pose> interpolate(std::span<const double> path) const;
+
+ private:
+  static Place place_of(double time, std::span<const double> times);
+
+  Pose start_;
+  ReferencePath used_;
+  std::vector<Place> places_;
+};
+
+}  // namespace montecarta::analysis

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/run/pits.hpp"
+
+#include "analysis/run/nees.hpp"
+#include "analysis/statistics/distributions.hpp"
+#include "analysis/statistics/sampler_scale.hpp"
+#include "analysis/statistics/spread.hpp"
+#include "engine/numbers/angle.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace montecarta::analysis {
+namespace {
+
+double wrapped(std::size_t component, double difference) {
+  return component == 2 ? wrap(difference) : difference;
+}
+
+/// Gaussian probability of less than `deviation` = truth - mean; NaN without a positive variance.
+double gaussian_share(double deviation, double variance) {
+  if (!(variance > 0.0) || !std::isfinite(variance) || !std::isfinite(deviation)) return kNaN;
+  return 0.5 * std::erfc(-deviation / std::sqrt(2.0 * variance));
+}
+
+RunPits::Components gaussian_pits(const std::vector<double>& truth, const MomentRows& moments,
+                                  std::size_t scan) {
+  RunPits::Components pits;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double deviation = wrapped(c, truth[3 * scan + c] - moments.mean[3 * scan + c]);
+    pits[c] = gaussian_share(deviation, moments.covariance[9 * scan + 4 * c]);
+  }
+  return pits;
+}
+
+/// The truth is one more draw (Hotelling's F of one component). NaN for three effective draws or
+/// fewer.
+RunPits::Components drawn_pits(const RunRows& rows, const EffectiveDraws& draws, std::size_t scan) {
+  RunPits::Components pits{kNaN, kNaN, kNaN};
+  const double E = draws.of_mean;
+  if (!(E > 3.0)) return pits;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double error = wrapped(c, rows.truth[3 * scan + c] - rows.spread.mean[3 * scan + c]);
+    const double variance = rows.spread.covariance[9 * scan + 4 * c] * (E + 1.0) / (E - 1.0);
+    if (!(variance > 0.0) || !std::isfinite(variance) || !std::isfinite(error)) continue;
+    pits[c] = t_cdf(error / std::sqrt(variance), draws.of_variance - 1.0);
+  }
+  return pits;
+}
+
+/// Rank of the truth among the particles, smoothed: E draws of equal weight leave E + 1 gaps of
+/// equal probability, and `within` spreads the truth evenly over its gap from run to run. For
+/// uneven weights E is the effective sample size.
+RunPits::Components rank_pits(const RunRows& rows, std::size_t scan, double within) {
+  const std::size_t M = rows.log_weight.size() / (rows.truth.size() / 3);
+  RunPits::Components pits;
+  for (std::size_t c = 0; c < 3; ++c) {
+    double below = 0.0, all = 0.0, squares = 0.0;
+    for (std::size_t i = scan * M; i < (scan + 1) * M; ++i) {
+      const double weight = std::exp(rows.log_weight[i]);
+      all += weight;
+      squares += weight * weight;
+      if (wrapped(c, rows.particle_pose[3 * i + c] - rows.truth[3 * scan + c]) < 0.0) {
+        below += weight;
+      }
+    }
+    const double E = all * all / squares;
+    pits[c] = (below / all * E + within) / (E + 1.0);
+  }
+  return pits;
+}
+
+/// Transforms of one landmark of the map, a different one from run to run.
+std::array<double, 2> landmark_pits(const FinalMap& map, std::uint64_t run,
+                                    std::span<const Eigen::Vector2d> landmarks) {
+  std::vector<std::size_t> seen;
+  for (std::size_t l = 0; l < std::min(map.seen.size(), landmarks.size()); ++l) {
+    if (map.seen[l] != 0) seen.push_back(l);
+  }
+  if (seen.empty()) return {kNaN, kNaN};
+  const std::size_t l = seen[run % seen.size()];
+  const Eigen::Vector2d error = landmarks[l] - map.mean[l];
+  return {gaussian_share(error.x(), map.covariance[l](0, 0)),
+          gaussian_share(error.y(), map.covariance[l](1, 1))};
+}
+
+/// In (0, 1), evenly spread over any stretch of runs: multiples of the golden ratio.
+double evenly(std::uint64_t run) {
+  const double golden = 0.6180339887498949 * (static_cast<double>(run) + 0.5);
+  return golden - std::floor(golden);
+}
+
+}  // namespace
+
+RunPits pits_of(const RunRows& rows, std::size_t particles, std::uint64_t run,
+                std::span<const Eigen::Vector2d> landmarks) {
+  RunPits pits;
+  if (rows.truth.empty()) return pits;
+  const MomentRows& estimate = estimate_of(rows);
+  const auto scans = calibration_scans(rows.truth.size() / 3);
+  pits.has_pose = !estimate.covariance.empty();
+  pits.has_rank = !rows.log_weight.empty();
+  pits.has_landmark = rows.final_map && !landmarks.empty();
+  for (std::size_t m = 0; m < kQuarters; ++m) {
+    if (pits.has_pose) {
+      const bool drawn = particles > 0 && is_drawn(rows, scans[m]);
+      pits.pose[m] = drawn ? drawn_pits(rows, draws_at(rows, particles, scans[m]), scans[m])
+                           : gaussian_pits(rows.truth, estimate, scans[m]);
+    }
+    if (pits.has_rank) pits.rank[m] = rank_pits(rows, scans[m], evenly(run));
+  }
+  if (pits.has_landmark) pits.landmark = landmark_pits(*rows.final_map, run, landmarks);
+  return pits;
+}
+
+std::array<double, kQuarters> nees_pits(std::span<const double> nees, std::size_t dimension) {
+  std::array<double, kQuarters> pits;
+  const auto scans = calibration_scans(nees.size());
+  for (std::size_t m = 0; m < kQuarters; ++m) {
+    const double value = nees[scans[m]];
+    pits[m] = std::isfinite(value) ? chi_squared_cdf(value, static_cast<double>(dimension)) : kNaN;
+  }
+  return pits;
+}
+
+}  // namespace montecarta::analysis

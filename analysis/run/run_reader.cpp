@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/run/run_reader.hpp"
+
+#include "engine/errors.hpp"
+
+#include <algorithm>
+
+namespace montecarta::analysis {
+namespace {
+
+constexpr std::string_view kFinalMapSeen = "final_map_seen";
+constexpr double kRoundingOfCounts = 1e-6;  // [landmarks]
+
+}  // namespace
+
+RunReader::RunReader(const ResultFile& file, const StoredCell& cell, Reach reach)
+    : file_(&file), cell_(&cell), reach_(reach), cpu_seconds_(file.cpu_seconds(cell)) {}
+
+bool RunReader::has(std::string_view column, std::size_t i) const {
+  return cell_->has(column) || (reach_ == Reach::full_run && file_->holds(*cell_, column, i));
+}
+
+std::size_t RunReader::scans_of(std::size_t i) const {
+  return drive_of_run(*file_, file_->runs()[i]).scan_times.size();
+}
+
+void RunReader::keep_scans(std::size_t width, std::size_t i, std::vector<double>& rows) const {
+  const auto scan_rows = std::span(file_->scan_rows()).first(scans_of(i));
+  for (std::size_t s = 0; s < scan_rows.size(); ++s) {
+    if (scan_rows[s] == s) continue;
+    std::copy_n(rows.begin() + static_cast<std::ptrdiff_t>(scan_rows[s] * width), width,
+                rows.begin() + static_cast<std::ptrdiff_t>(s * width));
+  }
+  rows.resize(scan_rows.size() * width);
+}
+
+void RunReader::read_truth(std::size_t i, std::vector<double>& out) const {
+  if (!file_->has_truth()) return out.clear();
+  out.resize(file_->times().size() * 3);
+  file_->read_truth(i, out);
+  keep_scans(3, i, out);
+}
+
+void RunReader::read_at_scans(std::string_view column, std::size_t width, std::size_t i,
+                              std::vector<double>& out) const {
+  if (!has(column, i)) return out.clear();
+  out.resize(file_->times().size() * width);
+  file_->read(*cell_, column, i, std::span(out));
+  keep_scans(width, i, out);
+}
+
+void RunReader::read_path(std::size_t i, std::vector<double>& out) const {
+  if (drive_of_run(*file_, file_->runs()[i]).references.empty()) return out.clear();
+  out.resize(file_->times().size() * 3);
+  const bool mixture = has("pose_mean_mixture", i);
+  file_->read(*cell_, mixture ? "pose_mean_mixture" : "pose_mean", i, std::span(out));
+  if (!file_->description().drives.empty()) out.resize(scans_of(i) * 3);  // rows are scans
+}
+
+void RunReader::read_final_map(std::size_t i, RunRows& rows) const {
+  rows.final_map.reset();
+  const bool is_final = cell_->has(kFinalMapSeen);
+  const std::string prefix = is_final ? "final_map_" : "map_";
+  if (!cell_->has(prefix + "seen")) return;
+  const std::size_t landmarks = cell_->find(prefix + "seen")->shape.back();
+  // A mean over weights that add up to one but for rounding.
+  if (!rows.map_size.empty() &&
+      rows.map_size.back() > static_cast<double>(landmarks) + kRoundingOfCounts)
+    return;                 // record.map_rows left part of it out
+  std::vector<double> all;  // at every scan, or at the last one
+  const auto last = [&](const char* name, std::size_t width) {
+    read_whole(prefix + name, i, all);
+    const std::size_t maps = is_final ? 1 : scans_of(i);
+    return std::span<const double>(all).first(maps * landmarks * width).last(landmarks * width);
+  };
+  FinalMap& map = rows.final_map.emplace();
+  for (const double one : last("seen", 1)) map.seen.push_back(one != 0.0 ? 1 : 0);
+  const auto mean = last("mean", 2);
+  for (std::size_t l = 0; l < landmarks; ++l) map.mean.emplace_back(mean[2 * l], mean[2 * l + 1]);
+  const auto covariance = last("covariance", 4);
+  for (std::size_t l = 0; l < landmarks; ++l) {
+    map.covariance.emplace_back(Eigen::Map<const Eigen::Matrix2d>(covariance.data() + 4 * l));
+  }
+}
+
+void RunReader::read_whole(std::string_view column, std::size_t i, std::vector<double>& out) const {
+  if (!cell_->has(column)) return out.clear();
+  out.resize(cell_->find(column)->elements());
+  file_->read(*cell_, column, i, std::span(out));
+}
+
+template <class Number>
+void RunReader::read_scans(std::string_view column, std::size_t width, std::size_t i,
+                           std::vector<Number>& out) const {
+  if (!has(column, i)) return out.clear();
+  if (cell_->find(column)->axes.front() != engine::Axis::scan) {
+    throw StudyError(file_->path().string() + ": cells/" + cell_->label + "/" +
+                     std::string(column) +
+                     " has other axes than it should (the file is damaged): take a copy that is "
+                     "whole, or run the study again");
+  }
+  out.resize(file_->scan_times().size() * width);
+  file_->read(*cell_, column, i, std::span(out));
+  out.resize(scans_of(i) * width);
+}
+
+void RunReader::expect_particles(const RunRows& rows) const {
+  std::uint32_t largest = 0;
+  for (const std::uint32_t parent : rows.ancestor) largest = std::max(largest, parent);
+  if (rows.ancestor.empty() || largest < cell_->particles) return;
+  throw StudyError(file_->path().string() + ": cell '" + cell_->label + "', run " +
+                   std::to_string(rows.run) +
+                   ": an ancestor is none of the particles (the file is damaged): run the study "
+                   "again");
+}
+
+void RunReader::read_particles(std::size_t i, RunRows& rows) const {
+  rows.ess.clear();
+  rows.resampled.clear();
+  if (cell_->particles > 0) {
+    read_scans("ess", 1, i, rows.ess);
+    read_scans("resampled", 1, i, rows.resampled);
+  }
+  read_scans("ancestor", cell_->particles, i, rows.ancestor);
+  expect_particles(rows);
+  read_scans("particle_pose", 3 * cell_->particles, i, rows.particle_pose);
+  read_scans("log_weight", cell_->particles, i, rows.log_weight);
+}
+
+void RunReader::read(std::size_t i, RunRows& rows) const {
+  file_->expect_whole(*cell_, i);
+  read_truth(i, rows.truth);
+  read_at_scans("pose_mean", 3, i, rows.spread.mean);
+  read_at_scans("pose_covariance", 9, i, rows.spread.covariance);
+  read_at_scans("pose_mean_mixture", 3, i, rows.mixture.mean);
+  read_at_scans("pose_covariance_mixture", 9, i, rows.mixture.covariance);
+  read_scans("numerical_faults", 1, i, rows.numerical_faults);
+  read_scans("association_correct", 1, i, rows.association.correct);
+  read_scans("association_wrong", 1, i, rows.association.wrong);
+  read_scans("association_new_again", 1, i, rows.association.new_again);
+  read_scans("association_missed", 1, i, rows.association.missed);
+  read_scans("association_clutter", 1, i, rows.association.clutter);
+  read_scans("nis", 1, i, rows.nis);
+  read_scans("nis_dof", 1, i, rows.nis_dof);
+  read_path(i, rows.path);
+  read_scans("map_size", 1, i, rows.map_size);
+  read_scans("rotation_information", 1, i, rows.rotation_information);
+  read_final_map(i, rows);
+  read_whole("joint_mean", i, rows.joint.mean);
+  read_whole("joint_covariance", i, rows.joint.covariance);
+  read_whole("error", i, rows.error.value);
+  read_whole("error_covariance", i, rows.error.covariance);
+  for (std::size_t k = 0; k < kErrorConventions.size(); ++k) {
+    read_whole(kErrorConventions[k].column, i, rows.error.nees_by[k]);
+  }
+  rows.run = file_->runs()[i];
+  rows.landmarks = file_->landmarks_of(i);
+  rows.cpu_seconds = cpu_seconds_[i];
+  read_particles(i, rows);
+}
+
+RunRows read_run(const ResultFile& file, const StoredCell& cell, std::size_t i) {
+  RunRows rows;
+  RunReader(file, cell, Reach::full_run).read(i, rows);
+  return rows;
+}
+
+}  // namespace montecarta::analysis

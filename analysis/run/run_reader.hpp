@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/run/run_rows.hpp"
+#include "engine/records/result_file.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace montecarta::analysis {
+
+/// The drive of one run: views into a file's description.
+struct RunDrive {
+  std::span<const double> scan_times;         ///< [s]
+  std::span<const std::uint32_t> scan_steps;  ///< step after which each scan was taken
+  Pose start;                                 ///< before the first step
+  std::span<const ReferencePath> references;  ///< of a recorded drive
+};
+
+/// The drive of run number `run` of the study, also if the file does not hold that run. The file
+/// must outlive it.
+inline RunDrive drive_of_run(const ResultFile& file, std::uint64_t run) {
+  const ResultDescription& all = file.description();
+  if (all.drives.empty()) return {all.scan_times, all.scan_steps, all.start, all.references};
+  const OwnDrive& own = all.drives.at(run);
+  return {own.scan_times, own.scan_steps, own.start, own.references};
+}
+
+/// The columns that are read: those that every run has, or all that a run has.
+enum class Reach : std::uint8_t { every_run, full_run };
+
+/// Reads the runs of one cell at its scans. Any number of threads may call read(), each with its
+/// own rows. The file and the cell must outlive it.
+class RunReader {
+ public:
+  RunReader(const ResultFile& file, const StoredCell& cell, Reach reach = Reach::every_run);
+
+  /// Number of particles of the cell; 0 if it has none.
+  std::size_t particles() const { return cell_->particles; }
+
+  /// Fills `rows` with run index `i` (0-based in the file), which is complete. Throws StudyError if
+  /// the run is damaged (ResultFile::expect_whole()).
+  void read(std::size_t i, RunRows& rows) const;
+
+ private:
+  /// Returns whether run index `i` has the column, and is to give it.
+  bool has(std::string_view column, std::size_t i) const;
+  void read_truth(std::size_t i, std::vector<double>& out) const;
+  void read_path(std::size_t i, std::vector<double>& out) const;
+  /// The map after the last scan, also of columns that hold every one.
+  void read_final_map(std::size_t i, RunRows& rows) const;
+  /// A column over time, of which scans are kept; `width` numbers a row. Empty where not stored.
+  void read_at_scans(std::string_view column, std::size_t width, std::size_t i,
+                     std::vector<double>& out) const;
+  /// All of a column, as far as it is stored.
+  void read_whole(std::string_view column, std::size_t i, std::vector<double>& out) const;
+  /// Weights, parents and poses of the particles; empty where the cell has none.
+  void read_particles(std::size_t i, RunRows& rows) const;
+  /// Throws StudyError where a parent does not exist.
+  void expect_particles(const RunRows& rows) const;
+  template <class Number>
+  void read_scans(std::string_view column, std::size_t width, std::size_t i,
+                  std::vector<Number>& out) const;
+  /// Number of scans of run index `i`. A drive shorter than others has fewer than the file.
+  std::size_t scans_of(std::size_t i) const;
+  /// Leaves of rows of `width` numbers those at the scans of run index `i`.
+  void keep_scans(std::size_t width, std::size_t i, std::vector<double>& rows) const;
+
+  const ResultFile* file_;
+  const StoredCell* cell_;
+  Reach reach_;
+  std::vector<double> cpu_seconds_;
+};
+
+/// One run alone, index `i`, with the columns that are stored only of runs in full.
+RunRows read_run(const ResultFile& file, const StoredCell& cell, std::size_t i);
+
+}  // namespace montecarta::analysis

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/statistics/sums.hpp"
+#include "engine/records/result_file.hpp"
+#include "filters/models/field_of_view.hpp"
+#include "filters/models/sensor.hpp"
+#include "filters/models/vehicle.hpp"
+
+#include <Eigen/Core>
+
+#include <optional>
+
+namespace montecarta::analysis {
+
+/// The true vehicle, sensor and noise of a simulation, which filters may believe to be different.
+struct SimulatedWorld {
+  Vehicle vehicle;
+  ControlNoise control_noise;
+  Eigen::Vector2d sigma_observation;  ///< of the sensor's components (deviations_of())
+  double detected = 1.0;              ///< probability that a landmark in view is detected
+  FieldOfView view;
+  bool same_path = true;  ///< of all runs: the noise is on the controls that filters are given
+  Sensor sensor = {};
+};
+
+/// The simulated world, read from the attributes of /scenario; nullopt if the file is not of a
+/// simulation or lacks an attribute.
+std::optional<SimulatedWorld> simulated_world_of(const ResultFile& file);
+
+}  // namespace montecarta::analysis

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <tuple>
+#include <vector>
+
+namespace montecarta::analysis {
+
+/// A closed interval. Both ends are NaN where there is none.
+struct Interval {
+  double lower = 0.0;
+  double upper = 0.0;
+  static constexpr auto members() { return std::tuple(&Interval::lower, &Interval::upper); }
+};
+
+/// One end of each: `&Interval::lower` or `&Interval::upper`.
+std::vector<double> ends_of(const std::vector<Interval>& intervals, double Interval::*end);
+
+/// "[3.38, 3.79]"; "-" where there is no interval.
+std::string interval_text(const Interval& interval);
+
+/// A mean with the interval that holds it, "3.58 [3.38, 3.79]": all to the second significant digit
+/// of the interval's half width. The mean alone where there is no interval.
+std::string with_interval(double mean, const Interval& interval);
+
+}  // namespace montecarta::analysis

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/study/imported_notes.hpp"
+
+#include "analysis/run/nees.hpp"
+#include "analysis/study/cell_analysis.hpp"
+#include "analysis/study/nees_result.hpp"
+#include "analysis/study/prose.hpp"
+#include "analysis/verdict/convention_hints.hpp"
+#include "engine/text/number_text.hpp"
+
+namespace montecarta::analysis {
+namespace {
+
+std::string sentence_on(const std::string& convention) {
+  if (convention == "body") return "in the frame of the estimate";
+  if (convention == "right-invariant")
+    return "right-invariant: the logarithm of mean times inverse truth";
+  return "estimate minus truth in the frame of the map";
+}
+
+}  // namespace
+
+std::string components_text(const StudyAnalysis& study) {
+  std::string all;
+  for (const std::string& name : study.imported.components) all += (all.empty() ? "" : ", ") + name;
+  return all;
+}
+
+std::vector<std::string> imported_notes(const StudyAnalysis& study) {
+  if (!study.imported.is_imported()) return {};
+  const std::string& convention = study.imported.convention;
+  std::vector<std::string> notes = {prose("components", "imported",
+                                          {{"convention", convention},
+                                           {"meaning", sentence_on(convention)},
+                                           {"components", components_text(study)}})};
+  for (const CellAnalysis& cell : study.cells) {
+    const std::string hint = in_words(cell.get<ConventionHint>(), cell.label, convention);
+    if (!hint.empty()) notes.push_back(prose("components", "hint", {{"hint", hint}}));
+  }
+  for (const CellAnalysis& cell : study.cells) {
+    const NeesResult* all = cell.find_nees(ErrorBlock::pose, cell.leading);
+    if (all == nullptr || all->series.unusable == 0) continue;
+    const double share =
+        static_cast<double>(all->series.unusable) / static_cast<double>(all->series.samples);
+    notes.push_back(prose("components", "unusable",
+                          {{"cell", cell.label},
+                           {"unusable", std::to_string(all->series.unusable)},
+                           {"samples", std::to_string(all->series.samples)},
+                           {"share", percent(share)}}));
+  }
+  return notes;
+}
+
+}  // namespace montecarta::analysis

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/run/map_scores.hpp"
+#include "analysis/statistics/interval.hpp"
+#include "analysis/statistics/spread.hpp"
+#include "analysis/statistics/sums.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <vector>
+
+namespace montecarta::analysis {
+
+/// One landmark over the runs that have it in their map.
+struct LandmarkErrors {
+  std::uint32_t runs = 0;       ///< with it in the map
+  std::uint32_t valid = 0;      ///< of them: with a finite NEES
+  double rms = kNaN;            ///< [m]
+  double anees = kNaN;          ///< [1] of two components
+  Interval bounds{kNaN, kNaN};  ///< of anees, by `valid`
+};
+
+/// Final maps over the complete runs of a cell.
+struct MapErrors {
+  std::size_t undefined = 0;              ///< landmarks, over all runs, that have no NEES
+  std::vector<LandmarkErrors> landmarks;  ///< {landmark}; empty where association is unknown
+  std::string missing = {};               ///< why there are no numbers; else empty
+
+  /// Share of the landmarks with a NEES that are inside their bounds; NaN if there are none.
+  double share_inside() const;
+};
+
+/// Adds up complete runs in the order of the calls.
+class MapErrorSums {
+ public:
+  /// Adds a run; nullopt if its map is not stored or not whole.
+  void add(const std::optional<MapScores>& run);
+  /// `known`: whether the true positions of the landmarks are known.
+  MapErrors result(double level, bool known) const;
+  static constexpr auto parts() {
+    return std::tuple(added(&MapErrorSums::landmarks_, &MapErrorSums::n_runs_,
+                            &MapErrorSums::n_maps_, &MapErrorSums::undefined_));
+  }
+
+ private:
+  struct Sums {
+    double squares = 0.0, nees = 0.0;
+    std::uint32_t runs = 0, valid = 0;
+    static constexpr auto parts() {
+      return std::tuple(added(&Sums::squares, &Sums::nees, &Sums::runs, &Sums::valid));
+    }
+  };
+  std::string reason(bool known) const;
+
+  std::vector<Sums> landmarks_;  ///< {landmark}
+  std::size_t n_runs_ = 0, n_maps_ = 0, undefined_ = 0;
+};
+
+}  // namespace montecarta::analysis

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/run/pits.hpp"
+#include "analysis/statistics/sums.hpp"
+#include "analysis/statistics/uniformity.hpp"
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <tuple>
+#include <vector>
+
+namespace montecarta::analysis {
+
+/// The quantity of transforms by the law of the NEES.
+inline constexpr const char* kNees = "NEES";
+
+/// The transforms of one quantity over runs, compared to the uniform law.
+struct JudgedPits {
+  std::string quantity;       ///< "x", "y", "heading", "landmark x", "landmark y", "NEES"
+  std::string by;             ///< "Gaussian" or "particles"
+  double time = 0.0;          ///< [s] of the scan
+  std::size_t undefined = 0;  ///< runs without a value
+  Uniformity test;
+
+  bool is_like(const JudgedPits& other) const {
+    return quantity == other.quantity && by == other.by && time == other.time;
+  }
+};
+
+/// The judged transforms of a cell; empty if nothing is judged.
+using Calibrations = std::vector<JudgedPits>;
+
+/// Collects the transforms of complete runs in the order of the calls.
+class CalibrationSums {
+ public:
+  void add(const RunPits& run) { runs_.push_back(run); }
+  /// `times` [s] of all scans. A calibrated cell has no fault in any test with probability `level`
+  /// at least. The order is pose by moments, ranks, landmarks, NEES; quantities that are not stored
+  /// are absent.
+  Calibrations result(std::span<const double> times, double level) const;
+  static constexpr auto parts() { return std::tuple(appended(&CalibrationSums::runs_)); }
+
+ private:
+  std::vector<RunPits> runs_;
+};
+
+}  // namespace montecarta::analysis

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/run/drive_scores.hpp"
+#include "analysis/run/study_facts.hpp"
+#include "analysis/verdict/verdict.hpp"
+
+#include <cstddef>
+#include <span>
+#include <string>
+
+namespace montecarta::analysis {
+
+/// Verdict on a cell by one reference. Runs on the same drive differ by the filter's random numbers
+/// alone, so many say no more about the drive than one; runs on drives of their own are
+/// independent.
+struct DriveConsistency {
+  Answer answer = Answer::untested;
+  double within = kUsualMargin;
+  DriveScores mean;        ///< means over runs; of counts and flags the largest
+  double minutes = 0.0;    ///< of such driving after which the verdict is decided; may be infinite
+  std::size_t drives = 0;  ///< drives that were judged; 0: all runs process one drive
+};
+
+/// Judges runs of one cell on the same drive. Untested if there are no runs, if no fix can be
+/// judged, or if the estimate is the reference itself.
+DriveConsistency judge_drive(std::span<const DriveScores> runs, double level, double within);
+
+/// Judges runs on drives of their own, with DriveScores::errors. In `mean`, fixes, seconds and
+/// counts are sums. Drives without a fix that can be judged are left out.
+DriveConsistency judge_own_drives(std::span<const DriveScores> runs, double level, double within);
+
+/// "consistent within 1.1", "optimistic by 1.3 to 2.1", "this drive cannot tell: it would need 40
+/// minutes", ...
+std::string in_words(const DriveConsistency& drive);
+
+}  // namespace montecarta::analysis

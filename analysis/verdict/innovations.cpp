@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/verdict/innovations.hpp"
+
+#include "analysis/statistics/distributions.hpp"
+#include "analysis/statistics/interval.hpp"
+#include "analysis/statistics/nees_bounds.hpp"
+#include "engine/errors.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace montecarta::analysis {
+namespace {
+
+constexpr std::size_t kLagsTogether = 24;  // lags from 0 in whole registers
+
+static_assert(kInnovationLags < kLagsTogether);
+
+/// How many standard deviations white innovations keep to at all of `lags` lags (Sidak).
+double white_deviate(std::size_t lags, double level) {
+  const double each = std::pow(level, 1.0 / static_cast<double>(lags));
+  return normal_quantile(0.5 + 0.5 * each);
+}
+
+bool is_innovation(double nis, std::uint32_t dof) { return dof > 0 && std::isfinite(nis); }
+
+/// The normal score of a chi-square variable (Wilson and Hilferty 1931), also where its tail is too
+/// small for a double.
+double normal_deviate(double chi_square, double freedom) {
+  const double variance = 2.0 / (9.0 * freedom);
+  return (std::cbrt(chi_square / freedom) - (1.0 - variance)) / std::sqrt(variance);
+}
+
+bool is_off(Answer answer) {
+  return answer == Answer::optimistic || answer == Answer::conservative ||
+         answer == Answer::inconsistent;
+}
+
+}  // namespace
+
+InnovationSums::Totals::Totals(std::size_t scans)
+    : nis_(scans), products_(1 + std::min(kInnovationLags, scans / 4)) {}
+
+void InnovationSums::Totals::add(std::span<const double> nis, std::span<const std::uint32_t> dof) {
+  std::vector<double> there(nis.begin(), nis.end());
+  for (std::size_t s = 0; s < nis.size(); ++s) {
+    if (!is_innovation(nis[s], dof[s])) there[s] = kNaN;
+  }
+  nis_.add(there, std::vector<double>(dof.begin(), dof.end()));
+  add_products(nis, dof);
+}
+
+void InnovationSums::Totals::add_products(std::span<const double> nis,
+                                          std::span<const std::uint32_t> dof) {
+  // The last scan stands first, so that earlier ones follow it; where there is none stands zero.
+  deviations_.assign(nis.size() + kLagsTogether, 0.0);
+  is_there_.assign(deviations_.size(), 0.0);
+  for (std::size_t s = 0; s < nis.size(); ++s) {
+    if (!is_innovation(nis[s], dof[s])) continue;
+    const std::size_t place = nis.size() - 1 - s;
+    deviations_[place] = (nis[s] - dof[s]) / std::sqrt(2.0 * dof[s]);
+    is_there_[place] = 1.0;
+  }
+  std::array<double, kLagsTogether> n{}, both{}, product{};
+  for (std::size_t place = nis.size(); place-- > 0;) {
+    if (is_there_[place] == 0.0) continue;
+    const double* const earlier = deviations_.data() + place;
+    const double* const is_there = is_there_.data() + place;
+    for (std::size_t lag = 0; lag < kLagsTogether; ++lag) {
+      n[lag] += is_there[lag];
+      both[lag] += is_there[lag] * (*earlier + earlier[lag]);
+      product[lag] += *earlier * earlier[lag];
+    }
+  }
+  for (std::size_t lag = 0; lag < products_.size(); ++lag) {
+    products_[lag].n += n[lag];
+    products_[lag].both += both[lag];
+    products_[lag].product += product[lag];
+  }
+}
+
+void InnovationSums::add(std::uint64_t run, std::span<const double> times,
+                         std::span<const double> nis, std::span<const std::uint32_t> dof) {
+  std::optional<LargestRun> next;
+  for (std::size_t s = 0; s < nis.size(); ++s) {
+    if (!is_innovation(nis[s], dof[s])) continue;
+    const double deviate = normal_deviate(nis[s], dof[s]);
+    if (next && deviate <= next->deviate) continue;
+    next = {.deviate = deviate, .run = run, .scan = s, .time = times[s], .nis = {}, .dof = {}};
+  }
+  if (!next) return;
+  if (largest_ && next->deviate <= largest_->deviate) return others_.add(nis, dof);
+  if (largest_) others_.add(largest_->nis, largest_->dof);
+  next->nis.assign(nis.begin(), nis.end());
+  next->dof.assign(dof.begin(), dof.end());
+  largest_.swap(next);
+}
+
+void InnovationSums::merge(InnovationSums& next) {
+  merge_into(others_, next.others_);
+  if (!next.largest_) return;
+  if (!largest_) return largest_.swap(next.largest_);
+  if (next.largest_->deviate > largest_->deviate) largest_.swap(next.largest_);
+  others_.add(next.largest_->nis, next.largest_->dof);
+}
+
+Innovations InnovationSums::result(std::span<const double> times, double level,
+                                   double within) const {
+  expect(largest_.has_value(), "an innovation");
+  Totals all = others_, without = others_;
+  all.add(largest_->nis, largest_->dof);
+  std::vector<std::uint32_t> dof = largest_->dof;
+  dof[largest_->scan] = 0;
+  without.add(largest_->nis, dof);
+  Innovations result = all.result(times, level, within);
+  const Innovations rest = without.result(times, level, within);
+  result.largest = {.nis = largest_->nis[largest_->scan],
+                    .dof = static_cast<double>(largest_->dof[largest_->scan]),
+                    .run = largest_->run,
+                    .time = largest_->time,
+                    .ratio_without = rest.ratio,
+                    .whiteness_without = rest.whiteness(),
+                    .answer_without = rest.verdict.answer};
+  return result;
+}
+
+Innovations InnovationSums::Totals::result(std::span<const double> times, double level,
+                                           double within) const {
+  Innovations result;
+  double tested = 0.0, inside = 0.0;
+  for (const SummedError::Scan& scan : nis_.scans()) {
+    const auto freedom = static_cast<std::uint64_t>(scan.dimensions);
+    result.average.push_back(scan.ratio());  // NaN where there is none
+    result.bounds.push_back(freedom == 0 ? Interval{} : nees_bounds(freedom, 1, level));
+    if (freedom == 0) continue;
+    const Interval& band = result.bounds.back();
+    tested += 1.0;
+    inside += band.lower <= scan.ratio() && scan.ratio() <= band.upper ? 1.0 : 0.0;
+  }
+  result.share_inside = inside / tested;
+  find_correlations(level, result);
+  judge_size(times, level, within, result);
+  return result;
+}
+
+void InnovationSums::Totals::find_correlations(double level, Innovations& result) const {
+  result.autocorrelation.assign(kInnovationLags, kNaN);
+  result.white_bound.assign(kInnovationLags, kNaN);
+  const double mean = products_[0].both / (2.0 * products_[0].n);
+  const double power = products_[0].mean_product(mean);
+  double farthest = 0.0;
+  for (std::size_t lag = 1; lag < products_.size(); ++lag) {
+    if (products_[lag].n == 0.0 || !(power > 0.0)) continue;
+    const double correlation = products_[lag].mean_product(mean) / power;
+    const double bound = white_deviate(products_.size() - 1, level) / std::sqrt(products_[lag].n);
+    result.autocorrelation[lag - 1] = correlation;
+    result.white_bound[lag - 1] = bound;
+    if (result.worst_lag > 0 && std::abs(correlation) / bound <= farthest) continue;
+    farthest = std::abs(correlation) / bound;
+    result.worst_lag = lag;
+  }
+}
+
+void InnovationSums::Totals::judge_size(std::span<const double> times, double level, double within,
+                                        Innovations& result) const {
+  std::vector<FamilyTest> families;
+  if (result.whiteness() != Whiteness::not_white) {
+    families = nis_.white_families(level, times);
+  } else if (runs() >= kFewestRunsOfSize) {
+    families = judge_tests({nis_.size_test()}, level);
+  }
+  result.verdict = judge(std::move(families), level, within, runs());
+  double sum = 0.0, freedom = 0.0;
+  for (const SummedError::Scan& scan : nis_.scans()) {
+    sum += scan.nees;
+    freedom += scan.dimensions;
+  }
+  const double judged = result.verdict.ratio_estimate();
+  result.ratio = std::isnan(judged) ? sum / freedom : judged;
+}
+
+Whiteness Innovations::whiteness() const {
+  if (worst_lag == 0) return Whiteness::untested;
+  const bool is_white = std::abs(autocorrelation[worst_lag - 1]) <= white_bound[worst_lag - 1];
+  return is_white ? Whiteness::white : Whiteness::not_white;
+}
+
+bool Innovations::are_decided_by_largest() const {
+  if (std::isnan(largest.ratio_without)) return false;
+  return whiteness() != largest.whiteness_without ||
+         is_off(verdict.answer) != is_off(largest.answer_without);
+}
+
+std::string whiteness_in_words(Whiteness whiteness, Answer answer) {
+  if (whiteness == Whiteness::untested) return "whiteness not tested, " + name_of(answer);
+  if (whiteness == Whiteness::white) return "white, " + name_of(answer);
+  return "not white, size " + (answer == Answer::untested ? "not judged" : name_of(answer));
+}
+
+std::string whiteness_in_words(const Innovations& found) {
+  return whiteness_in_words(found.whiteness(), found.verdict.answer);
+}
+
+}  // namespace montecarta::analysis
