@@ -10,8 +10,9 @@
 namespace montecarta::filters::plain {
 
 /// EKF-SLAM (EQUATIONS 15; Smith et al. 1990; Thrun et al. 2005, table 10.1): one Gaussian over the
-/// pose and all landmarks. Detections update it one by one.
-class EkfSlam final : public SlamFilter {
+/// pose and all landmarks. Detections update it one by one. Its variants override where the motion
+/// and the observations are linearised, or what the error is of which P_ is the covariance.
+class EkfSlam : public SlamFilter {
  public:
   explicit EkfSlam(const FilterSetup& setup) : setup_(setup), R_(observation_noise(setup.belief)) {}
 
@@ -25,12 +26,9 @@ class EkfSlam final : public SlamFilter {
   /// Moves the pose (EQUATIONS (1.3), (1.4)) and its covariances with the landmarks.
   void predict(const StepContext& /*context*/, const Control& u, double duration) override {
     const auto step = linearised_move(pose(), u, duration, setup_.belief.vehicle);
-    const Matrix<3> Fx = pose_jacobian(step.jacobians);
     const ControlJacobian Fu = control_jacobian(step.jacobians);
-    mean_.head<3>() = to_vector(step.pose);
-    P_.topRows<3>() = (Fx * P_.topRows<3>()).eval();
-    P_.leftCols<3>() = (P_.leftCols<3>() * Fx.transpose()).eval();
-    P_.topLeftCorner<3, 3>() += Fu * control_noise(setup_.belief, u) * Fu.transpose();
+    move_pose(step.pose, pose_jacobian(step.jacobians),
+              Fu * control_noise(setup_.belief, u) * Fu.transpose());
   }
 
   void update(const StepContext& /*context*/, Scan scan) override {
@@ -53,71 +51,64 @@ class EkfSlam final : public SlamFilter {
   }
 
   PoseEstimate estimate() const override {
-    return {{pose(), P_.topLeftCorner<3, 3>()}, std::nullopt};
+    return {{pose(), covariance().topLeftCorner<3, 3>()}, std::nullopt};
   }
   const ScanReport& report() const override { return report_; }
   void map(std::span<std::optional<LandmarkEstimate>> landmarks) const override {
+    const Eigen::MatrixXd P = covariance();
     for (std::size_t k = 0; k < landmarks.size(); ++k) {
       landmarks[k].reset();
       const auto slot = slot_of(k, identities_, setup_.association.kind);
       if (!slot) continue;
       const Eigen::Index row = row_of(*slot);
-      landmarks[k] = {mean_.segment<2>(row), P_.block<2, 2>(row, row)};
+      landmarks[k] = {mean_.segment<2>(row), P.block<2, 2>(row, row)};
     }
   }
 
   /// Pose, then the landmarks in the order of their initialisation.
   const Eigen::VectorXd& mean() const { return mean_; }
-  const Eigen::MatrixXd& covariance() const { return P_; }
+  /// Covariance of truth minus mean.
+  virtual Eigen::MatrixXd covariance() const { return P_; }
 
- private:
-  /// An innovation with all that the update needs.
-  struct JointInnovation {
-    plain::Innovation value;
-    Eigen::Matrix<double, Eigen::Dynamic, 2> cross;  ///< P H'
-  };
-
+ protected:
   Pose pose() const { return as_pose(mean_.head<3>()); }
   static Eigen::Index row_of(std::size_t slot) { return 3 + 2 * static_cast<Eigen::Index>(slot); }
 
-  std::vector<Pairing> associated(Scan scan) const {
-    if (setup_.association.kind == Association::known) return pair_by_identity(scan, identities_);
-    const auto predict = [&](std::uint32_t slot, const Detection& z) {
-      const auto v = innovation(slot, z);
-      return v ? std::optional(v->value) : std::nullopt;
-    };
-    return pair_nearest(scan, identities_.size(), setup_.association, predict);
+  /// Moves the pose to `there`, with the derivative Fx by the pose before and the covariance of the
+  /// noise.
+  void move_pose(const Pose& there, const Matrix<3>& Fx, const Matrix<3>& noise) {
+    mean_.head<3>() = to_vector(there);
+    P_.topRows<3>() = (Fx * P_.topRows<3>()).eval();
+    P_.leftCols<3>() = (P_.leftCols<3>() * Fx.transpose()).eval();
+    P_.topLeftCorner<3, 3>() += noise;
   }
 
-  /// nu = z - h, S = H P H' + R with H = [Hx 0 ... Hf ... 0]; nullopt if the landmark is too near.
-  std::optional<JointInnovation> innovation(std::size_t slot, const Detection& z) const {
-    const Eigen::Index row = row_of(slot);
-    const Landmark known{.mean = mean_.segment<2>(row), .covariance = P_.block<2, 2>(row, row)};
-    const auto v = innovation_at(mean_.head<3>(), known, z, R_);
-    if (!v) return std::nullopt;
-    const Eigen::Matrix<double, Eigen::Dynamic, 2> cross =
-        P_.leftCols<3>() * v->Hx.transpose() + P_.middleCols<2>(row) * v->Hf.transpose();
-    const Matrix<2> S = v->Hx * cross.topRows<3>() + v->Hf * cross.middleRows<2>(row) + R_;
-    return JointInnovation{{v->nu, S}, cross};
+  /// nu = z - h of a landmark, and H = [Hx 0 ... Hf ... 0]; nullopt if the landmark is too near.
+  virtual std::optional<LinearisedInnovation> linearised(std::size_t slot,
+                                                         const Detection& z) const {
+    return innovation_at(mean_.head<3>(), certain_landmark(mean_.segment<2>(row_of(slot))), z, R_);
   }
 
-  /// m <- m + K nu, P <- P - K S K' (EQUATIONS (15.1)).
-  void condition(const JointInnovation& v) {
-    const auto& [nu, S] = v.value;
-    const Eigen::Matrix<double, Eigen::Dynamic, 2> K =
-        S.llt().solve(v.cross.transpose()).transpose();
-    mean_ += K * nu;
+  /// A landmark whose covariance is left to S = H P H' + R.
+  static Landmark certain_landmark(const Vector<2>& place) {
+    return {.mean = place, .covariance = Matrix<2>::Zero()};
+  }
+
+  /// Moves the mean by a step K nu.
+  virtual void move_mean(const Eigen::VectorXd& step) {
+    mean_ += step;
     mean_(2) = wrap(mean_(2));
-    P_ -= K * S * K.transpose();
-    report_.log_likelihood += log_gaussian<2>(nu, S);
-    report_.nis += squared_distance(nu, S);
-    report_.nis_dof += 2;
   }
 
-  /// Adds a landmark at g(x, z), with derivatives Gx and Gz (EQUATIONS 15).
-  void initialise(const Detection& z) {
+  /// Gx, the derivative of a new landmark by the pose.
+  virtual Matrix23 derivative_by_pose(const LinearisedPlace<double>& placed) const {
+    return pose_jacobian(placed);
+  }
+
+  /// Adds a landmark at g(x, z), with derivatives Gx and Gz (EQUATIONS (15.2)).
+  virtual void initialise(const Detection& z) {
     const auto placed = linearised_place(pose(), observation_of(z));
-    const Matrix23 Gx = pose_jacobian(placed);
+    const Matrix23 Gx = derivative_by_pose(placed);
     const Matrix<2> Gz = observation_jacobian(placed);
     const Eigen::Index n = mean_.size();
     mean_.conservativeResize(n + 2);
@@ -134,6 +125,46 @@ class EkfSlam final : public SlamFilter {
   Matrix<2> R_;
   Eigen::VectorXd mean_;
   Eigen::MatrixXd P_;
+
+ private:
+  /// An innovation with all that the update needs.
+  struct JointInnovation {
+    plain::Innovation value;
+    Eigen::Matrix<double, Eigen::Dynamic, 2> cross;  ///< P H'
+  };
+
+  std::vector<Pairing> associated(Scan scan) const {
+    if (setup_.association.kind == Association::known) return pair_by_identity(scan, identities_);
+    const auto predict = [&](std::uint32_t slot, const Detection& z) {
+      const auto v = innovation(slot, z);
+      return v ? std::optional(v->value) : std::nullopt;
+    };
+    return pair_nearest(scan, identities_.size(), setup_.association, predict);
+  }
+
+  /// nu and S = H P H' + R; nullopt if the landmark is too near.
+  std::optional<JointInnovation> innovation(std::size_t slot, const Detection& z) const {
+    const Eigen::Index row = row_of(slot);
+    const auto v = linearised(slot, z);
+    if (!v) return std::nullopt;
+    const Eigen::Matrix<double, Eigen::Dynamic, 2> cross =
+        P_.leftCols<3>() * v->Hx.transpose() + P_.middleCols<2>(row) * v->Hf.transpose();
+    const Matrix<2> S = v->Hx * cross.topRows<3>() + v->Hf * cross.middleRows<2>(row) + R_;
+    return JointInnovation{{v->nu, S}, cross};
+  }
+
+  /// m <- m + K nu, P <- P - K S K' (EQUATIONS (15.1)).
+  void condition(const JointInnovation& v) {
+    const auto& [nu, S] = v.value;
+    const Eigen::Matrix<double, Eigen::Dynamic, 2> K =
+        S.llt().solve(v.cross.transpose()).transpose();
+    move_mean(K * nu);
+    P_ -= K * S * K.transpose();
+    report_.log_likelihood += log_gaussian<2>(nu, S);
+    report_.nis += squared_distance(nu, S);
+    report_.nis_dof += 2;
+  }
+
   std::vector<std::int32_t> identities_;  ///< {landmark} of the detection that initialised it
   ScanReport report_;
 };

@@ -27,6 +27,9 @@ using SmallMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 8, 
 inline Pose as_pose(const Vector<3>& x) { return {x(0), x(1), wrap(x(2))}; }
 inline Vector<3> to_vector(const Pose& pose) { return {pose.x, pose.y, pose.heading}; }
 
+/// J p, the displacement of p per rad of a turn about the origin (EQUATIONS (15.3)).
+inline Vector<2> quarter_turned(const Vector<2>& p) { return {-p.y(), p.x()}; }
+
 /// K = C S^-1 for a covariance S, by its Cholesky factor.
 template <int N, int M>
 Matrix<N, M> gain(const Matrix<N, M>& C, const Matrix<M>& S) {

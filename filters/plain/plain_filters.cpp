@@ -4,7 +4,10 @@
 #include "filters/plain/de_srcd.hpp"
 #include "filters/plain/ekf_slam.hpp"
 #include "filters/plain/fastslam1.hpp"
+#include "filters/plain/fej_ekf_slam.hpp"
 #include "filters/plain/marginal.hpp"
+#include "filters/plain/oc_ekf_slam.hpp"
+#include "filters/plain/riekf_slam.hpp"
 #include "filters/plain/ufastslam.hpp"
 
 #include <algorithm>
@@ -39,6 +42,9 @@ struct PlainFilter {
 const std::vector<PlainFilter>& all_plain() {
   static const std::vector<PlainFilter> all{
       {"ekf_slam", make_plain<plain::EkfSlam>, {"iterations", "motion", "moments"}},
+      {"riekf_slam", make_plain<plain::RiekfSlam>, {"iterations", "motion", "moments"}},
+      {"fej_ekf_slam", make_plain<plain::FejEkfSlam>, {"motion", "moments"}},
+      {"oc_ekf_slam", make_plain<plain::OcEkfSlam>, {"motion", "moments"}},
       {"fastslam1", make_plain<plain::FastSlam1>, {}},
       {"fastslam2", make_plain<plain::FastSlam2>, {}},
       {"ufastslam", make_plain<plain::UFastSlam>, {}},

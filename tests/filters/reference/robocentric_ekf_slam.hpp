@@ -11,8 +11,7 @@
 #include <cmath>
 #include <vector>
 
-/// Kalman filters with full matrices at every step and known association, as their papers have
-/// them.
+/// A Kalman filter with full matrices at every step and known association, as its paper has it.
 namespace montecarta::filters::reference {
 
 /// A B and A P A' of full matrices; every size alike, which spares the compiler most of its work.
@@ -109,77 +108,6 @@ class FullGaussian {
   Belief belief_;
   Eigen::Index rows_before_;
   std::vector<std::int32_t> identities_;
-};
-
-/// EKF-SLAM by first estimates as Huang, Mourikis and Roumeliotis 2008 have it: propagation by the
-/// predicted place before the last update, observations by that of the scan and the landmark as it
-/// was initialised. `constrained`: as they have it in 2010, with p* = p + lambda / (m + 1) before a
-/// motion, lambda = sum of (landmark - its first estimate - (p - p predicted + sum of all p* - p
-/// predicted before)).
-class FejEkfSlam : public FullGaussian {
- public:
-  FejEkfSlam(const Belief& belief, bool constrained)
-      : FullGaussian(belief, 3), constrained_(constrained) {}
-
-  void start(const Pose& start) {
-    FullGaussian::start(Eigen::Vector3d(start.x, start.y, start.heading));
-    predicted_ = mean.head<2>();
-    moved_.setZero();
-    first_.clear();
-  }
-  void predict(const Control& control, double duration) {
-    const auto step = linearised_move(pose_at(0), control, duration, belief().vehicle);
-    if (is_updated_) choose_origin();
-    const Eigen::Vector2d way = Eigen::Vector2d(step.pose.x, step.pose.y) - predicted_;
-    Eigen::Matrix3d F = Eigen::Matrix3d::Identity();
-    F.block<2, 1>(0, 2) << -way.y(), way.x();
-    move(0, step.pose, F, control_jacobian(step.jacobians));
-    predicted_ = mean.head<2>();
-  }
-  void update(Scan scan) {
-    const Pose from{predicted_.x(), predicted_.y(), mean(2)};
-    use(
-        scan,
-        [&](const Detection& detection, Eigen::Index row) {
-          const Eigen::Vector2d place = first_[static_cast<std::size_t>(row - 3) / 2] + moved_;
-          const auto at = linearised_observation(from, Point{place.x(), place.y()});
-          const auto expected = linearised_observation(pose_at(0), point_at(row)).observation;
-          condition(derivative(0, row, at), residual(observation_of(detection), expected));
-          mean(2) = wrap(mean(2));
-        },
-        [&](const Detection& detection) { place(detection); });
-    is_updated_ = true;
-  }
-  PoseMoments moments() const { return {pose_at(0), covariance.topLeftCorner<3, 3>()}; }
-
- private:
-  /// The point at which the next propagation begins: p*.
-  void choose_origin() {
-    is_updated_ = false;
-    if (!constrained_) return;
-    const Eigen::Vector2d correction = mean.head<2>() - predicted_;
-    Eigen::Vector2d lambda = Eigen::Vector2d::Zero();
-    for (std::size_t slot = 0; slot < first_.size(); ++slot) {
-      lambda += mean.segment<2>(3 + 2 * static_cast<Eigen::Index>(slot)) - first_[slot] -
-                (correction + moved_);
-    }
-    const Eigen::Vector2d origin = mean.head<2>() + lambda / static_cast<double>(first_.size() + 1);
-    moved_ += origin - predicted_;
-    predicted_ = origin;
-  }
-  /// Derivative by the heading: from the predicted place, as an observation of it would have.
-  void place(const Detection& detection) {
-    const auto placed = linearised_place(pose_at(0), observation_of(detection));
-    const Eigen::Vector2d away = to_vector(placed.point) - predicted_;
-    append(detection, placed, Matrix23{{1.0, 0.0, -away.y()}, {0.0, 1.0, away.x()}});
-    first_.emplace_back(to_vector(placed.point) - moved_);
-  }
-
-  bool constrained_;
-  bool is_updated_ = false;
-  Eigen::Vector2d predicted_ = Eigen::Vector2d::Zero();
-  Eigen::Vector2d moved_ = Eigen::Vector2d::Zero();  ///< sum of p* - p predicted
-  std::vector<Eigen::Vector2d> first_;               ///< as initialised, less the motion until then
 };
 
 /// Robocentric EKF-SLAM as Castellanos, Martinez-Cantin, Tardos and Neira 2007 have it. The state
