@@ -2,9 +2,11 @@
 #include "engine/records/open_result.hpp"
 
 #include "engine/errors.hpp"
-#include "engine/records/merge.hpp"
-#include "engine/records/result_writer.hpp"
+#include "engine/records/read_description.hpp"
+#include "engine/records/result_format.hpp"
+#include "engine/records/result_schema.hpp"
 #include "engine/records/seal.hpp"
+#include "engine/records/shard.hpp"
 
 #include <algorithm>
 #include <array>
@@ -90,8 +92,8 @@ OpenResult new_work(const fs::path& work, const ResultDescription& description, 
 
 }  // namespace
 
-ResultWriter ResultWriter::create(const fs::path& path, const StudyPlan& plan,
-                                  const TextPairs& provenance, Existing existing) {
+OpenResult create_result(const fs::path& path, const StudyPlan& plan, const TextPairs& provenance,
+                         Existing existing) {
   std::error_code ignored;
   if (fs::is_directory(path, ignored))
     throw StudyError(path.string() + ": is a folder: name a file in it");
@@ -103,7 +105,7 @@ ResultWriter ResultWriter::create(const fs::path& path, const StudyPlan& plan,
   OpenResult result =
       new_work(part_of(path), description, replaced ? Existing::replace : Existing::refuse);
   result.existing = existing;
-  return {path, std::move(result), plan};
+  return result;
 }
 
 namespace {
@@ -254,14 +256,11 @@ OpenResult continued_work(const fs::path& work, const fs::path& path,
 
 }  // namespace
 
-ResultWriter ResultWriter::resume(const fs::path& path, const StudyPlan& plan,
-                                  const TextPairs& provenance) {
+OpenResult resume_result(const fs::path& path, const StudyPlan& plan, const TextPairs& provenance) {
   const bool begun = is_there(part_of(path));
-  if (!begun && !is_there(path)) return create(path, plan, provenance, Existing::refuse);
+  if (!begun && !is_there(path)) return create_result(path, plan, provenance, Existing::refuse);
   const ResultDescription planned = describe(plan, provenance);
-  return {path,
-          begun ? continued_work(part_of(path), path, planned) : finished_result(path, planned),
-          plan};
+  return begun ? continued_work(part_of(path), path, planned) : finished_result(path, planned);
 }
 
 namespace {
@@ -359,10 +358,9 @@ void copy_complete_runs(const fs::path& other, const ResultDescription& planned,
 
 }  // namespace
 
-ResultWriter ResultWriter::attempt(const fs::path& path, const StudyPlan& plan,
-                                   const TextPairs& provenance) {
+OpenResult open_attempt(const fs::path& path, const StudyPlan& plan, const TextPairs& provenance) {
   const ResultDescription planned = describe(plan, provenance);
-  if (is_there(path)) return {path, finished_result(path, planned), plan};
+  if (is_there(path)) return finished_result(path, planned);
   const fs::path own = own_name(path);
   OpenResult result = take_checkpoint(path, own, planned)
                           ? continued_work(own, path, planned)
@@ -371,7 +369,7 @@ ResultWriter ResultWriter::attempt(const fs::path& path, const StudyPlan& plan,
   for (const fs::path& other : attempts_at(path)) {
     if (other != own && other.extension() != ".new") copy_complete_runs(other, planned, result);
   }
-  return {path, std::move(result), plan};
+  return result;
 }
 
 void rename_finished(OpenResult& attempt, const fs::path& path) {

@@ -2,6 +2,8 @@
 #include "engine/records/result_file.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/records/read_description.hpp"
+#include "engine/records/result_format.hpp"
 #include "engine/records/seal.hpp"
 #include "engine/records/sum_groups.hpp"
 #include "engine/visible_text.hpp"

@@ -3,6 +3,8 @@
 
 #include "engine/errors.hpp"
 #include "engine/records/fingerprint.hpp"
+#include "engine/records/h5.hpp"
+#include "engine/records/result_format.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The contents of a result file: its description, listed once for both the writer and the reader,
-// and the place of all runs (analysis/FORMAT.md).
-#include "engine/records/result_layout.hpp"
+#include "engine/records/result_schema.hpp"
+
+#include "engine/records/result_format.hpp"
 #include "engine/records/run_record.hpp"
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 
 #include "engine/errors.hpp"
 #include "engine/records/fingerprint.hpp"
-#include "engine/records/result_layout.hpp"
+#include "engine/records/result_format.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -3,6 +3,8 @@
 
 #include "engine/errors.hpp"
 #include "engine/records/open_result.hpp"
+#include "engine/records/read_description.hpp"
+#include "engine/records/result_format.hpp"
 #include "engine/records/seal.hpp"
 
 #include <algorithm>

@@ -3,8 +3,8 @@
 
 #include "analysis/metrics/stored_sums.hpp"
 #include "engine/errors.hpp"
-#include "engine/records/open_result.hpp"
 #include "engine/records/posix_file.hpp"
+#include "engine/records/read_description.hpp"
 #include "engine/records/result_file.hpp"
 #include "experiments/commands/stored_result.hpp"
 
