@@ -11,6 +11,7 @@
 #include "engine/wrapped_text.hpp"
 #include "experiments/commands/arguments.hpp"
 #include "experiments/commands/commands.hpp"
+#include "experiments/study/enough_runs.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>

@@ -9,9 +9,8 @@
 #include "experiments/commands/output_guard.hpp"
 #include "experiments/commands/stored_result.hpp"
 #include "experiments/recordings/recorded_drive.hpp"
-#include "experiments/study/make_drives.hpp"
 #include "experiments/study/make_plan.hpp"
-#include "experiments/study/settings.hpp"
+#include "experiments/study/setting_table.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>

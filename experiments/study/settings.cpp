@@ -112,14 +112,6 @@ std::string most_of(const Parameter& option) {
 
 }  // namespace
 
-std::optional<std::string> Setting::fallback_for(std::string_view scenario_kind) const {
-  for (const auto& [of_kind, value] : fallback_of_kind) {
-    if (of_kind != scenario_kind) continue;
-    return value == kRequired ? std::nullopt : std::optional(value);
-  }
-  return fallback;
-}
-
 std::string demand_of(const Parameter& option) {
   const std::string unit = option.unit.empty() || option.unit == "1" ? "" : " " + option.unit;
   const std::string range = " from " + to_text(option.least) + " to " + most_of(option) + unit;
