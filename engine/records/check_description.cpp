@@ -35,18 +35,18 @@ using Check = std::function<void(bool, const std::string&)>;
 
 /// Texts that are shown within one line of a table, a figure or a comment.
 void check_texts(const ResultDescription& d, const Check& check) {
-  const auto expect_line = [&](const std::string& text) {
+  const auto require_line = [&](const std::string& text) {
     check(visible(text, "\t") == text, "a control character in '" + visible(text) + "'");
   };
-  expect_line(d.study_name);
-  expect_line(d.title);
-  for (const auto& [key, value] : d.scenario) expect_line(key), expect_line(value);
+  require_line(d.study_name);
+  require_line(d.title);
+  for (const auto& [key, value] : d.scenario) require_line(key), require_line(value);
   for (const StoredCell& cell : d.cells) {
-    for (const std::string& text : {cell.label, cell.filter, cell.long_name}) expect_line(text);
-    for (const auto& [key, value] : cell.settings) expect_line(key), expect_line(value);
+    for (const std::string& text : {cell.label, cell.filter, cell.long_name}) require_line(text);
+    for (const auto& [key, value] : cell.settings) require_line(key), require_line(value);
     for (const Column& column : cell.columns) {
       for (const std::string& text : {column.name, column.units, column.long_name}) {
-        expect_line(text);
+        require_line(text);
       }
     }
   }

@@ -16,7 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void expect_mergeable(const fs::path& out, const std::vector<fs::path>& shards, Existing existing) {
+void require_mergeable(const fs::path& out, const std::vector<fs::path>& shards,
+                       Existing existing) {
   std::error_code ignored;
   if (shards.empty()) throw StudyError(out.string() + ": no shards to merge: name at least one");
   for (const fs::path& shard : shards) {
@@ -24,7 +25,7 @@ void expect_mergeable(const fs::path& out, const std::vector<fs::path>& shards, 
       throw StudyError(out.string() +
                        ": is one of the shards: choose another name for the merged file");
   }
-  if (existing == Existing::refuse) expect_free(out);
+  if (existing == Existing::refuse) require_free(out);
 }
 
 /// Opens every shard, and throws StudyError unless all are of one study.
@@ -59,7 +60,7 @@ std::vector<std::size_t> choose_sources(const std::vector<Shard>& shards, std::u
       if (source.at(run) == none) {
         source[run] = s;
       } else {
-        expect_equal(shards[source[run]], shards[s], run);
+        require_equal(shards[source[run]], shards[s], run);
       }
     }
   }
@@ -108,7 +109,7 @@ void copy_runs(const std::vector<Shard>& shards, const std::vector<std::size_t>&
     const PosixFile from(shards[s].path, PosixFile::Mode::read);
     // Runs that are copied from another shard are checked too: they were compared by fingerprints,
     // which must match the bytes in both shards.
-    for (std::uint64_t run : shards[s].complete_runs) expect_whole(from, shards[s], run, buffer);
+    for (std::uint64_t run : shards[s].complete_runs) require_whole(from, shards[s], run, buffer);
     for (const RunSpan& runs : given_by(shards[s], s, source))
       copy_runs(from, shards[s], runs, file, slabs, runs.first);
   }
@@ -121,7 +122,7 @@ void copy_runs(const std::vector<Shard>& shards, const std::vector<std::size_t>&
 
 MergeSummary merge_results(const fs::path& out, const std::vector<fs::path>& paths,
                            Existing existing) {
-  expect_mergeable(out, paths, existing);
+  require_mergeable(out, paths, existing);
   ResultDescription description = read_description(paths.front());
   if (description.sums) return merge_groups(out, paths, 0, description.study_runs, existing);
   const std::vector<Shard> shards = open_shards(paths, description);

@@ -19,8 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void refuse_existing(const fs::path& path) {
-  expect_free(path);
+void require_no_result(const fs::path& path) {
+  require_free(path);
   if (is_there(part_of(path))) {
     throw StudyError(
         part_of(path).string() +
@@ -97,7 +97,7 @@ OpenResult create_result(const fs::path& path, const StudyPlan& plan, const Text
   std::error_code ignored;
   if (fs::is_directory(path, ignored))
     throw StudyError(path.string() + ": is a folder: name a file in it");
-  if (existing == Existing::refuse) refuse_existing(path);
+  if (existing == Existing::refuse) require_no_result(path);
   ResultDescription description = describe(plan, provenance);
   if (is_there(path)) description.provenance.emplace_back(format::kReplaces, "an older result");
   std::optional<PosixFile> replaced;  // locked, so no process is writing the replaced work
@@ -123,8 +123,8 @@ std::string range(const ResultDescription& result) {
   return std::to_string(result.runs.front()) + ":" + std::to_string(result.runs.back() + 1);
 }
 
-void expect_same(const fs::path& path, const ResultDescription& planned,
-                 const ResultDescription& stored) {
+void require_same(const fs::path& path, const ResultDescription& planned,
+                  const ResultDescription& stored) {
   if (const auto different = difference(planned, stored, path)) throw StudyError(*different);
   if (stored.runs == planned.runs) return;
   throw StudyError(path.string() + ": holds runs " + range(stored) + " (asked for: " +
@@ -146,8 +146,8 @@ bool holds_the_same(const fs::path& path, const ResultDescription& planned) {
 }
 
 /// Throws StudyError if finishing would replace a different file at `path` without --force.
-void expect_replaceable(const fs::path& path, const ResultDescription& planned,
-                        const ResultDescription& begun) {
+void require_replaceable(const fs::path& path, const ResultDescription& planned,
+                         const ResultDescription& begun) {
   if (!is_there(path) || begun_with_force(begun) || holds_the_same(path, planned)) return;
   throw StudyError(path.string() + ": exists and is not the result that " + part_of(path).string() +
                    " becomes (finishing would replace it): move it away, then continue with "
@@ -203,7 +203,7 @@ OpenResult open_existing(const fs::path& path, PosixFile::Mode mode,
   OpenResult result{PosixFile(path, mode), {}, {}, {}, {}};
   if (mode == PosixFile::Mode::write) result.file.lock();
   stored = read_description_of(path);
-  expect_same(path, planned, stored);
+  require_same(path, planned, stored);
   result.slabs = find_slabs(path, stored);
   for (const CellSlabs& cell : result.slabs.cells)
     result.status.push_back(read_statuses(result.file, cell, stored.runs.size()));
@@ -213,7 +213,7 @@ OpenResult open_existing(const fs::path& path, PosixFile::Mode mode,
 
 /// Throws StudyError if runs are missing although the file has its final name, e.g. because it was
 /// renamed.
-void expect_finished(const OpenResult& result) {
+void require_finished(const OpenResult& result) {
   std::size_t missing = 0;
   std::size_t all = 0;
   for (const auto& of_cell : result.status) {
@@ -231,7 +231,7 @@ void expect_finished(const OpenResult& result) {
 OpenResult finished_result(const fs::path& path, const ResultDescription& planned) {
   ResultDescription stored;
   OpenResult finished = open_existing(path, PosixFile::Mode::read, planned, stored);
-  expect_finished(finished);
+  require_finished(finished);
   finished.notes.push_back(path.string() + " is complete already");
   return finished;
 }
@@ -241,7 +241,7 @@ OpenResult continued_work(const fs::path& work, const fs::path& path,
                           const ResultDescription& planned) {
   ResultDescription stored;
   OpenResult result = open_existing(work, PosixFile::Mode::write, planned, stored);
-  expect_replaceable(path, planned, stored);
+  require_replaceable(path, planned, stored);
   if (is_there(path)) result.existing = Existing::replace;
   const std::size_t torn = reset_torn_runs(result);
   if (torn > 0) {

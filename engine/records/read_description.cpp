@@ -14,7 +14,7 @@
 namespace montecarta::engine {
 namespace {
 
-void expect_result_file(const h5::Handle& file, const std::filesystem::path& path) {
+void require_result_file(const h5::Handle& file, const std::filesystem::path& path) {
   if (h5::find_text(file, "filetype") != std::string(format::kFiletype)) {
     throw StudyError(
         path.string() + ": not a montecarta result (its attribute 'filetype' is not '" +
@@ -108,7 +108,7 @@ std::optional<SummedRuns> read_summed_runs(const h5::Handle& file,
 }  // namespace
 
 ResultDescription read_description(const h5::Handle& file, const std::filesystem::path& path) {
-  expect_result_file(file, path);
+  require_result_file(file, path);
   ResultDescription result;
   read_schema(file, result);
   result.has_truth = h5::has(file, "truth");

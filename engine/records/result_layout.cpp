@@ -114,7 +114,7 @@ std::vector<RunStatus> read_statuses(const PosixFile& file, const CellSlabs& cel
                                      std::size_t runs) {
   std::vector<RunStatus> statuses(runs);
   file.read_at(cell.status.offset, std::as_writable_bytes(std::span(statuses)));
-  expect_known(statuses, file.path().string());
+  require_known(statuses, file.path().string());
   return statuses;
 }
 

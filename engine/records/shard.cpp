@@ -98,7 +98,7 @@ Shard make_shard(const std::filesystem::path& path, const ResultDescription& des
   return shard;
 }
 
-void expect_equal(const Shard& a, const Shard& b, std::uint64_t run) {
+void require_equal(const Shard& a, const Shard& b, std::uint64_t run) {
   const PosixFile file_a(a.path, PosixFile::Mode::read);
   const PosixFile file_b(b.path, PosixFile::Mode::read);
   const auto slabs_a = fingerprints(a.slabs);
@@ -115,8 +115,8 @@ void expect_equal(const Shard& a, const Shard& b, std::uint64_t run) {
   }
 }
 
-void expect_whole(const PosixFile& file, const Shard& shard, std::uint64_t run,
-                  std::vector<std::byte>& buffer) {
+void require_whole(const PosixFile& file, const Shard& shard, std::uint64_t run,
+                   std::vector<std::byte>& buffer) {
   const auto spared = [&](const CellSlabs& cell) {
     return status_of(file, cell, shard.index(run)) == RunStatus::spared;
   };

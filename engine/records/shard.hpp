@@ -28,10 +28,10 @@ struct Shard {
 Shard make_shard(const std::filesystem::path& path, const ResultDescription& description);
 
 /// Throws StudyError if the two shards hold different bytes for run `run`, which both have.
-void expect_equal(const Shard& a, const Shard& b, std::uint64_t run);
+void require_equal(const Shard& a, const Shard& b, std::uint64_t run);
 /// Throws StudyError if a run does not match its fingerprints.
-void expect_whole(const PosixFile& file, const Shard& shard, std::uint64_t run,
-                  std::vector<std::byte>& buffer);
+void require_whole(const PosixFile& file, const Shard& shard, std::uint64_t run,
+                   std::vector<std::byte>& buffer);
 /// The ranges of a file that are written after it is laid out, increasing and disjoint.
 std::vector<ByteRange> written_later(const ResultSlabs& slabs);
 

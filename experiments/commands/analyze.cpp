@@ -20,7 +20,7 @@ void check_outputs(const Arguments& arguments, const ResultFile& file) {
   const auto directory = arguments.text("csv");
   if (output) {
     refuse_input_as_output(*output, arguments.operands());
-    expect_place_for_result(*output);
+    require_place_for_result(*output);
   }
   if (arguments.has("force")) return;
   if (output) refuse_existing("", {*output});
@@ -32,7 +32,7 @@ void check_outputs(const Arguments& arguments, const ResultFile& file) {
 
 /// Throws StudyError unless all files hold the same study: the tables of different studies below
 /// each other could be mistaken for one.
-void expect_one_study(const std::vector<std::string>& names) {
+void require_one_study(const std::vector<std::string>& names) {
   if (names.size() == 1) return;
   const std::string first = open_stored(names.front()).study_sha256();
   for (const std::string& name : names) {
@@ -67,7 +67,7 @@ int analyze_command(const Arguments& arguments) {
         "analyze: -o and --csv take one file (shards are merged first): see montecarta "
         "merge --help");
   }
-  expect_one_study(names);
+  require_one_study(names);
   for (const std::string& name : names) {
     const ResultFile file = open_stored(name);
     check_outputs(arguments, file);

@@ -27,7 +27,7 @@ const StoredCell& cell_to_judge(const Arguments& arguments, const ResultFile& fi
 }
 
 /// Throws StudyError if runs are missing: those that ended first are not a fair sample.
-void expect_all_runs(const ResultFile& file, const StoredCell& cell) {
+void require_all_runs(const ResultFile& file, const StoredCell& cell) {
   const RunCounts counts = count_status(file, cell);
   if (counts.missing == 0) return;
   throw StudyError(file.path().string() + ": " + std::to_string(counts.missing) + " runs of cell " +
@@ -117,7 +117,7 @@ int gate_command(const Arguments& arguments) {
                      ": a recorded drive without truth (its errors are unknown): gate a simulated "
                      "study, or see the scores against references by montecarta analyze");
   }
-  expect_all_runs(file, stored);
+  require_all_runs(file, stored);
   const CellAnalysis cell =
       analyze_cell(file, stored, kGateLevel, file.runs().size(), parallel_of(arguments), within);
   const GateAnswer answer =

@@ -32,7 +32,7 @@ std::optional<ErrorConvention> convention_of(const Arguments& arguments) {
 JudgingOptions judging_options(const Arguments& arguments) {
   JudgingOptions options;
   options.output = arguments.text("output").value();
-  expect_place_for_result(options.output);
+  require_place_for_result(options.output);
   options.convention = convention_of(arguments);
   options.match.tolerance =
       arguments.number("tolerance", 0.0, 1e6).value_or(options.match.tolerance);

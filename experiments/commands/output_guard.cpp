@@ -42,7 +42,7 @@ void refuse_input_as_output(const fs::path& output, const std::vector<std::strin
   }
 }
 
-void expect_place_for_result(const fs::path& output) {
+void require_place_for_result(const fs::path& output) {
   if (output.empty()) {
     throw StudyError("the name of the result is empty (it needs one): name a file, e.g. out.h5");
   }

@@ -74,7 +74,7 @@ RunOptions options_of(const Study& study, const Arguments& arguments) {
   }
   RunOptions options;
   options.output = output_of(study, arguments);
-  expect_place_for_result(options.output);
+  require_place_for_result(options.output);
   options.parallel = parallel_of(arguments);
   options.resume = arguments.has("resume");
   options.force = arguments.has("force");

@@ -127,7 +127,7 @@ void read_odometry(const fs::path& path, DriveLog& log) {
     for (std::size_t c = 0; c < log.controls.size(); ++c)
       odometry.control[c] = quantity_in(rows, c + 1, log.controls[c]);
   }
-  rows.expect_some();
+  rows.require_some();
 }
 
 /// The identity in a field; nullopt if the field is empty.
@@ -208,7 +208,7 @@ void read_scans(const fs::path& path, DriveLog& log) {
     check_identity(rows, detection.identity, log.landmarks.size(), seen);
     scans.back().detections.push_back(detection);
   }
-  rows.expect_some();
+  rows.require_some();
 }
 
 /// Reads the landmarks. If there is a column of identities, every identity from 0 on must occur
@@ -347,8 +347,8 @@ class Table {
 };
 
 /// Throws StudyError for numbers that read_log_csv() would refuse.
-void expect_readable(std::span<const double> values, std::span<const Quantity> quantities,
-                     const fs::path& file) {
+void require_readable(std::span<const double> values, std::span<const Quantity> quantities,
+                      const fs::path& file) {
   for (std::size_t i = 0; i < quantities.size(); ++i) {
     const std::string fault = fault_of(values[i], quantities[i]);
     if (fault.empty()) continue;
@@ -362,7 +362,7 @@ Table odometry_table(const DriveLog& log, const fs::path& file) {
   for (const auto& [time, control] : log.odometry) {
     std::array<double, 1 + Control::kMost> row{time};
     std::ranges::copy(control.values, row.begin() + 1);
-    expect_readable(control.values, log.controls, file);
+    require_readable(control.values, log.controls, file);
     table.add(std::span(row).first(1 + log.controls.size()));
   }
   return table;
@@ -387,7 +387,7 @@ Table detection_table(const DriveLog& log, const fs::path& file) {
     for (const Detection& detection : detections) {
       std::array<double, 1 + Detection::kMost> row{time};
       std::ranges::copy(detection.values, row.begin() + 1);
-      expect_readable(detection.values, log.components, file);
+      require_readable(detection.values, log.components, file);
       table.add(std::span(row).first(1 + n), identified ? identity_field(detection) : "");
     }
   }
@@ -504,7 +504,7 @@ ReferencePath read_reference_csv(const std::filesystem::path& path, const std::s
     }
     if (!reference.covariance.empty()) check_size(rows, reference.covariance.back(), dimension);
   }
-  rows.expect_some();
+  rows.require_some();
   return reference;
 }
 

@@ -137,7 +137,7 @@ std::string references_in_words(const Itinerary& itinerary) {
   return joined(all, "; ");
 }
 
-void expect_alike(const Itinerary& first, const Itinerary& other, std::size_t number) {
+void require_alike(const Itinerary& first, const Itinerary& other, std::size_t number) {
   const std::string drive = "drive " + std::to_string(number + 1);
   if (references_in_words(first) != references_in_words(other)) {
     throw StudyError(drive + " has the references " + references_in_words(other) +
@@ -245,7 +245,7 @@ SeveralDrives::SeveralDrives(std::vector<RecordedDrive> drives) : drives_(std::m
   itinerary_ = std::ranges::max_element(drives_, {}, scans)->itinerary();
   itinerary_.references.clear();
   for (std::size_t k = 1; k < drives_.size(); ++k)
-    expect_alike(drives_.front().itinerary(), drives_[k].itinerary(), k);
+    require_alike(drives_.front().itinerary(), drives_[k].itinerary(), k);
 }
 
 const Itinerary& SeveralDrives::itinerary_of(std::uint64_t run) const {

@@ -145,7 +145,7 @@ void refuse_column(const Study& study, const std::string& column, const std::str
 }
 
 /// Throws StudyError if cells stop by their verdict but cannot have one.
-void expect_verdict(const Study& study) {
+void require_verdict(const Study& study) {
   if (!study.until || study.until->metric) return;
   const Settings& settings = study.settings;
   const std::string problem =
@@ -226,7 +226,7 @@ std::string objection_to_observability(const Study& study) {
 namespace {
 
 /// Throws StudyError if the study stores sums of runs and cannot, or not of this range.
-void expect_summable(const Study& study, const std::optional<RunRange>& range) {
+void require_summable(const Study& study, const std::optional<RunRange>& range) {
   const Settings& settings = study.settings;
   if (!settings.lists("record", "columns", "sums")) return;
   const std::string place = settings.place("record", "columns") + ": sums ";
@@ -259,8 +259,8 @@ StudyPlan make_plan(const Study& study, std::optional<RunRange> range, ExternalP
   StudyPlan plan;
   if (study.until) plan.is_enough = enough_runs(*study.until, settings.place("study", "until"));
   if (range && study.until) refuse_part(study);
-  expect_summable(study, range);
-  expect_verdict(study);
+  require_summable(study, range);
+  require_verdict(study);
   plan.name = settings.text("study", "name");
   plan.title = settings.text("study", "title");
   plan.seed = settings.count("study", "seed");

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 constexpr const char* kScenario = "scenario";
 
 /// Throws StudyError unless the drive has the reference that the study names.
-void expect_reference(const Settings& settings, const DriveLog& log) {
+void require_reference(const Settings& settings, const DriveLog& log) {
   const std::string& name = settings.text(kScenario, "reference");
   if (name.empty()) return;
   item_called(name, log.references, &ReferencePath::name,
@@ -26,8 +26,8 @@ void expect_reference(const Settings& settings, const DriveLog& log) {
                   " (the drive has none of that name)");
 }
 
-void expect_same_drive(const Settings& settings, const std::string& expected,
-                       const std::string& fingerprint, const fs::path& folder) {
+void require_same_drive(const Settings& settings, const std::string& expected,
+                        const std::string& fingerprint, const fs::path& folder) {
   if (expected.empty() || expected == fingerprint) return;
   throw StudyError(settings.place(kScenario, "data_sha256") + ": the drive in " + folder.string() +
                    " is another one than the study was made with (its fingerprint is " +
@@ -46,7 +46,7 @@ std::vector<std::string> paths_in(const Settings& settings, const fs::path& stud
 
 /// Throws StudyError unless there is one run for each drive, and poses are stored at scans only,
 /// because drives differ in their steps.
-void expect_runs_to_fit(const Settings& settings, std::size_t drives) {
+void require_runs_to_fit(const Settings& settings, std::size_t drives) {
   if (drives < 2) return;
   if (settings.count("study", "runs") != drives) {
     throw StudyError(
@@ -91,7 +91,7 @@ void refuse_drive_again(const Settings& settings, const std::vector<std::string>
 std::vector<std::shared_ptr<const DriveLog>> read_drives_of(Settings& settings,
                                                             const fs::path& study_folder) {
   const std::vector<std::string> paths = paths_in(settings, study_folder);
-  expect_runs_to_fit(settings, paths.size());
+  require_runs_to_fit(settings, paths.size());
   const std::vector<std::string> expected = expected_fingerprints(settings, paths.size());
   std::vector<std::shared_ptr<const DriveLog>> logs;
   std::vector<std::string> fingerprints;
@@ -100,8 +100,8 @@ std::vector<std::shared_ptr<const DriveLog>> read_drives_of(Settings& settings,
                                      [&] { return find_recording(paths[k], {study_folder}); });
     DriveLog log = read_log_csv(folder);
     fingerprints.push_back(fingerprint_of(log));
-    expect_same_drive(settings, expected[k], fingerprints.back(), folder);
-    expect_reference(settings, log);
+    require_same_drive(settings, expected[k], fingerprints.back(), folder);
+    require_reference(settings, log);
     logs.push_back(std::make_shared<const DriveLog>(std::move(log)));
   }
   refuse_drive_again(settings, paths, fingerprints);
