@@ -86,8 +86,8 @@ RunOptions options_of(const Study& study, const Arguments& arguments) {
   return options;
 }
 
-void tell_how_to_resume(const RunOutcome& outcome, const std::filesystem::path& work,
-                        const Arguments& arguments) {
+void print_how_to_resume(const RunOutcome& outcome, const std::filesystem::path& work,
+                         const Arguments& arguments) {
   std::cerr << "montecarta: stopped; " << outcome.counts.missing
             << " runs are missing, the finished ones are in " << work.string()
             << ". Continue with:\n  " << resuming_command(arguments) << "\n";
@@ -110,7 +110,7 @@ std::string draw_report(const ResultFile& file, const std::filesystem::path& fol
   }
 }
 
-void tell_results(const RunOptions& options, const std::optional<std::filesystem::path>& report) {
+void print_results(const RunOptions& options, const std::optional<std::filesystem::path>& report) {
   if (std::filesystem::file_size(options.output) > kLargestVerdict) {
     const std::string name = shell_quoted(options.output.string());
     std::cout << "The verdict: montecarta analyze " << name << "\n";
@@ -136,13 +136,13 @@ int run_command(const Arguments& arguments) {
   const RunOutcome outcome =
       plan.columns.sums ? run_summed_study(plan, options) : run_study(plan, options);
   if (outcome.counts.missing > 0) {
-    tell_how_to_resume(outcome,
-                       plan.columns.sums ? groups_of(options.output) : part_of(options.output),
-                       arguments);
+    print_how_to_resume(outcome,
+                        plan.columns.sums ? groups_of(options.output) : part_of(options.output),
+                        arguments);
     return exit_code(outcome, runs_under_scheduler());
   }
   if (!options.quiet) {
-    tell_results(options, report);
+    print_results(options, report);
     std::cerr << "montecarta: " << outcome.runs_here << " runs in "
               << duration_text(outcome.seconds) << ", stored in " << options.output.string()
               << "\n";

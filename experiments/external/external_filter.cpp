@@ -73,16 +73,16 @@ void ExternalFilter::begin(const StepContext& context) {
   if (!command_.keeps_process) session_->process.reset();
   if (session_->process != nullptr) {
     try {
-      tell_start(start);
+      send_start(start);
       return;
     } catch (const ProgramError&) {
       if (stop_ != nullptr && stop_->is_set()) throw;
     }
   }
-  tell_start(start);
+  send_start(start);
 }
 
-void ExternalFilter::tell_start(const RunStart& start) const {
+void ExternalFilter::send_start(const RunStart& start) const {
   try {
     use_process([&](Session& session) {
       if (session.process == nullptr)

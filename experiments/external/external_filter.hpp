@@ -62,7 +62,7 @@ class ExternalFilter final : public SlamFilter {
   };
 
   void begin(const StepContext& context);
-  void tell_start(const RunStart& start) const;
+  void send_start(const RunStart& start) const;
   std::string_view ask(const std::string& message) const;
   /// Calls `use`, and ends the process if that throws.
   template <class Use>
