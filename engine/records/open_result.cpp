@@ -190,12 +190,12 @@ std::string differences(const TextPairs& begun, const TextPairs& now) {
 
 /// Appends a line to the log of resumptions, unless the log is full.
 void log_session(const OpenResult& result, const std::string& line) {
-  std::string log(format::kSittingsBytes, '\0');
-  result.file.read_at(result.slabs.sittings.offset, std::as_writable_bytes(std::span(log)));
+  std::string log(format::kSessionsBytes, '\0');
+  result.file.read_at(result.slabs.sessions.offset, std::as_writable_bytes(std::span(log)));
   const std::size_t length = std::min(log.find('\0'), log.size());
   if (length + line.size() + 1 > log.size()) return;
   (line + "\n").copy(log.data() + length, line.size() + 1);
-  result.file.write_at(result.slabs.sittings.offset, std::as_bytes(std::span(log)));
+  result.file.write_at(result.slabs.sessions.offset, std::as_bytes(std::span(log)));
 }
 
 OpenResult open_existing(const fs::path& path, PosixFile::Mode mode,

@@ -97,7 +97,7 @@ ResultSlabs find_slabs(const std::filesystem::path& path, const ResultDescriptio
     }
   }
   slabs.wall_seconds = finder.find("timing/wall_seconds", sizeof(double), 1);
-  slabs.sittings = finder.find("provenance/sittings", format::kSittingsBytes, 1);
+  slabs.sessions = finder.find("provenance/sittings", format::kSessionsBytes, 1);
   for (const StoredCell& cell : description.cells) slabs.cells.push_back(finder.find(cell));
   for (std::size_t c = 0; description.sums && c < description.cells.size(); ++c) {
     const SummedRuns& sums = *description.sums;

@@ -41,7 +41,7 @@ struct TruthSlabs {
 struct ResultSlabs {
   std::optional<TruthSlabs> truth;  ///< nullopt if the truth is unknown
   Slab wall_seconds;                ///< one value for all runs
-  Slab sittings;                    ///< one text for all runs
+  Slab sessions;                    ///< one text for all runs
   std::vector<CellSlabs> cells;
   std::vector<Slab> sums;         ///< {cell} all groups; empty if the file has no sums
   std::vector<Slab> sum_seconds;  ///< {cell} processor time of every run in them [s]

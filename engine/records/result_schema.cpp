@@ -505,7 +505,7 @@ void lay_out(const std::filesystem::path& path, const ResultDescription& result)
     if (result.sums) add_sums(file, result);
   });
   add_text(
-      h5::open_group(file, "provenance"), "sittings", "", format::kSittingsBytes,
+      h5::open_group(file, "provenance"), "sittings", "", format::kSessionsBytes,
       {"1", "one line for each resumption of the work: what was different from its beginning"});
   scales.clear();
   h5::close_file(std::move(file));

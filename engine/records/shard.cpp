@@ -131,7 +131,7 @@ void require_whole(const PosixFile& file, const Shard& shard, std::uint64_t run,
 
 std::vector<ByteRange> written_later(const ResultSlabs& slabs) {
   std::vector<Slab> all = slabs_of_run(slabs);
-  all.insert(all.end(), {slabs.wall_seconds, slabs.sittings});
+  all.insert(all.end(), {slabs.wall_seconds, slabs.sessions});
   std::ranges::sort(all, {}, &Slab::offset);
   std::vector<ByteRange> merged;
   for (const Slab& slab : all) {
