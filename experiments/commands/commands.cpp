@@ -4,7 +4,7 @@
 #include "engine/errors.hpp"
 #include "engine/records/provenance.hpp"
 #include "engine/wrapped_text.hpp"
-#include "experiments/commands/output_guard.hpp"
+#include "experiments/commands/visible_output.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 
 #include "engine/records/posix_file.hpp"
 #include "experiments/commands/commands.hpp"
-#include "experiments/commands/output_guard.hpp"
+#include "experiments/commands/output_path.hpp"
 
 #include <iostream>
 
