@@ -3,7 +3,9 @@
 
 #include "engine/errors.hpp"
 #include "filters/dead_reckoning.hpp"
+#include "filters/fastslam/de_srcd.hpp"
 #include "filters/fastslam/fast_slam_filters.hpp"
+#include "filters/fastslam/sigma_filters.hpp"
 #include "filters/joint/joint_filter.hpp"
 #include "filters/marginal/marginal_filter.hpp"
 #include "filters/plain/plain_filters.hpp"

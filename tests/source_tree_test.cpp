@@ -106,6 +106,47 @@ std::vector<std::string> upward_includes(const Tree& tree) {
   return found;
 }
 
+/// Names of functions, or of the classes of member functions, whose declarations or definitions
+/// begin at the margin, and names of classes that are defined there. Leaves out unnamed namespaces.
+std::set<std::string> names_at_margin(const Lines& lines) {
+  static const std::regex function(R"(^(?!using |typedef |namespace |extern |return )[\w\[].*?)"
+                                   R"(\b(?!void\b|bool\b)(\w+)(::~?\w+)?\()");
+  static const std::regex type(R"(^(?:class|struct) (\w+)[^;]*\{)");
+  std::set<std::string> names;
+  bool is_unnamed = false;
+  std::smatch match;
+  for (const std::string& line : lines) {
+    if (line == "namespace {") is_unnamed = true;
+    if (line == "}  // namespace") is_unnamed = false;
+    if (is_unnamed || line.starts_with(' ')) continue;
+    if (std::regex_search(line, match, type) || std::regex_search(line, match, function))
+      names.insert(match[1]);
+  }
+  return names;
+}
+
+/// "path: name" for every function that is defined in a .cpp file and declared in headers, of the
+/// same library, but not in that of the same name.
+std::vector<std::string> defined_elsewhere(const Tree& tree) {
+  std::map<std::pair<std::string, std::string>, std::set<std::string>> declared;
+  for (const auto& [path, lines] : tree) {
+    if (!path.ends_with(".hpp")) continue;
+    for (const std::string& name : names_at_margin(lines))
+      declared[{library_of(path), name}].insert(path);
+  }
+  std::vector<std::string> found;
+  for (const auto& [path, lines] : tree) {
+    if (!path.ends_with(".cpp") || top_folder_of(path) == "tests") continue;
+    for (const std::string& name : names_at_margin(lines)) {
+      const auto headers = declared.find({library_of(path), name});
+      const std::string own = fs::path(path).replace_extension(".hpp").generic_string();
+      if (headers != declared.end() && !headers->second.contains(own))
+        found.push_back(path + ": " + name);
+    }
+  }
+  return found;
+}
+
 /// Files outside tests that include a header of which `prefix` is the beginning.
 std::vector<std::string> users_of(const Tree& tree, const std::string& prefix) {
   std::vector<std::string> users;
@@ -192,6 +233,13 @@ TEST(SourceTree, FoldersIncludeEachOtherInNoCycle) {
 
 TEST(SourceTree, ModulesIncludeEachOtherInNoCycle) {
   EXPECT_THAT(include_cycles(sources(), module_of), IsEmpty());
+}
+
+// Scores are declared where their table is, which must not know the list of metrics that has them.
+TEST(SourceTree, FunctionsAreDefinedWhereTheyAreDeclared) {
+  EXPECT_THAT(defined_elsewhere(sources()),
+              ElementsAre("analysis/study/registry.cpp: all_scan_series",
+                          "analysis/study/registry.cpp: all_scores"));
 }
 
 TEST(SourceTree, RoomsOfTheAnalysisIncludeOnlyThoseBelow) {
@@ -347,6 +395,13 @@ TEST(SourceTree, BrokenRulesAreFound) {
   EXPECT_THAT(too_wide(broken, 100), ElementsAre("analysis/c.py"));
   EXPECT_THAT(without_licence(broken), ElementsAre("analysis/b.hpp", "engine/a.cpp", "tests/run"));
   EXPECT_THAT(strays({"engine", "notes.txt", "build-dev"}), ElementsAre("notes.txt"));
+  EXPECT_THAT(
+      defined_elsewhere(
+          {{"engine/a.hpp", {"int f(std::function<void(int)> g);", "class A {"}},
+           {"engine/b.hpp", {"std::function<void(int)> h(int i);"}},
+           {"engine/a.cpp", {"A::A() {}", "bool A::is_a() const {", "void h(int i) {"}},
+           {"engine/b.cpp", {"int f(int i) {", "namespace {", "A::A(", "}  // namespace"}}}),
+      ElementsAre("engine/a.cpp: h", "engine/b.cpp: f"));
   const auto uses_rand = [](const std::string& line) { return line.starts_with("rand"); };
   EXPECT_THAT(faults(broken, "not ours", uses_rand), ElementsAre("engine/a.cpp:3: not ours"));
 }

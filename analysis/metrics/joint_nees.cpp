@@ -5,6 +5,7 @@
 #include "analysis/run/measured_run.hpp"
 #include "analysis/study/cell_report.hpp"
 #include "analysis/study/strips.hpp"
+#include "analysis/verdict/sentence.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -7,6 +7,7 @@
 #include "analysis/study/study_analysis.hpp"
 #include "analysis/study/verdict_table.hpp"
 #include "analysis/verdict/interim_analysis.hpp"
+#include "analysis/verdict/sentence.hpp"
 #include "analysis/verdict/whole_error.hpp"
 
 #include <cmath>

@@ -2,12 +2,16 @@
 #include "analysis/render/report.hpp"
 
 #include "analysis/render/figures/ancestry_figure.hpp"
+#include "analysis/render/figures/gnuplot.hpp"
 #include "analysis/render/figures/path_figure.hpp"
 #include "analysis/render/page/page.hpp"
 #include "analysis/render/page/replay/replay.hpp"
-#include "analysis/render/tables/tables.hpp"
+#include "analysis/render/page/replay/replay_still.hpp"
+#include "analysis/render/page/verdict_cards.hpp"
+#include "analysis/render/tables/files.hpp"
 #include "analysis/study/frame.hpp"
 #include "analysis/study/metric.hpp"
+#include "analysis/study/registry.hpp"
 #include "analysis/study/section.hpp"
 #include "analysis/study/study_analysis.hpp"
 #include "analysis/study/study_comparison.hpp"
@@ -58,11 +62,11 @@ Section titled(Section section) {
 
 /// Sections in the order of reading, each with its figures. Those without a place come last.
 std::vector<Section> arranged(std::vector<Section> sections, std::vector<Figure> figures) {
-  std::vector<Place> places = reading_order();
+  std::vector<SectionPlace> places = reading_order();
   for (const Section& section : sections) places.push_back({section.name});
   for (const Figure& figure : figures) places.push_back({figure.name});
   std::vector<Section> page;
-  for (Place& place : places) {
+  for (SectionPlace& place : places) {
     Section section = take(place.section, sections).value_or(Section{place.section, ""});
     section.shown = place.shown;
     place.figures.push_back(place.section);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/core/judgement.hpp"
 #include "engine/records/result_file.hpp"
 #include "engine/threads/parallel.hpp"
 
@@ -13,7 +14,7 @@ namespace montecarta::analysis {
 enum class ExistingReport { refuse, replace };
 
 struct ReportOptions {
-  double level = 0.95;               ///< of the NEES bounds
+  double level = kUsualLevel;        ///< of the NEES bounds
   std::optional<double> within;      ///< margin of consistent cells; default: that of the study
   std::optional<std::uint64_t> run;  ///< run that is drawn and replayed; default: first complete
   ExistingReport existing = ExistingReport::refuse;

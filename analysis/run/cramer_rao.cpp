@@ -41,9 +41,9 @@ void move_along(const TruePath& path, std::size_t row, const Vehicle& vehicle, J
   }
 }
 
-std::vector<JointBound::Seen> seen_from(const Pose& pose, const SimulatedWorld& world,
-                                        std::span<const Eigen::Vector2d> landmarks) {
-  std::vector<JointBound::Seen> seen;
+std::vector<JointBound::SeenLandmark> seen_from(const Pose& pose, const SimulatedWorld& world,
+                                                std::span<const Eigen::Vector2d> landmarks) {
+  std::vector<JointBound::SeenLandmark> seen;
   world.view.look(pose, landmarks, [&](const InView& one) {
     if (one.range < kLeastDistance) return;  // nothing with a derivative
     const Eigen::Vector2d& at = landmarks[one.landmark];

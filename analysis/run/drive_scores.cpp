@@ -67,7 +67,8 @@ ScanBeliefs beliefs_of(const RunRows& rows, std::size_t particles, std::size_t s
 }
 
 /// At the start the pose is known exactly.
-ScanBelief belief_between(const std::vector<ScanBelief>& scans, const PathAtFixes::Place& place) {
+ScanBelief belief_between(const std::vector<ScanBelief>& scans,
+                          const PathAtFixes::FixPlace& place) {
   const ScanBelief& after = scans[place.next];
   const ScanBelief before = place.next == 0 ? ScanBelief{.inverse_freedom = after.inverse_freedom}
                                             : scans[place.next - 1];
@@ -130,7 +131,7 @@ FixErrors errors_at_fixes(const PathAtFixes& fixes, std::span<const double> scan
   const ScanBeliefs scans = beliefs_of(rows, particles, scan_times.size(), dimension);
   const std::vector<Pose> poses = fixes.interpolate(scans.mean);
   for (std::size_t f = 0; f < poses.size(); ++f) {
-    const PathAtFixes::Place& place = fixes.places()[f];
+    const PathAtFixes::FixPlace& place = fixes.places()[f];
     const double before = place.next == 0 ? 0.0 : scan_times[place.next - 1];
     if (scan_times[place.next] - before > kLongestScanGap) {
       ++result.in_gaps;

@@ -53,19 +53,19 @@ void JointBound::finish_motion() {
   pending_x_heading_ = pending_y_heading_ = 0.0;
 }
 
-bool JointBound::scan(const Pose& pose, std::span<const Seen> landmarks) {
+bool JointBound::scan(const Pose& pose, std::span<const SeenLandmark> landmarks) {
   finish_motion();
   if (!fixes_landmark(sensor_)) {
-    for (const Seen& landmark : landmarks) {
+    for (const SeenLandmark& landmark : landmarks) {
       if (row_of(landmark.identity) == 0) append_unknown(landmark);
     }
   }
-  std::vector<Seen> known;
-  for (const Seen& landmark : landmarks) {
+  std::vector<SeenLandmark> known;
+  for (const SeenLandmark& landmark : landmarks) {
     if (row_of(landmark.identity) != 0) known.push_back(landmark);
   }
   if (!known.empty() && !correct(pose, known)) return false;
-  for (const Seen& landmark : landmarks) {
+  for (const SeenLandmark& landmark : landmarks) {
     if (row_of(landmark.identity) == 0) append(pose, landmark);
   }
   return pose_.allFinite();
@@ -79,12 +79,12 @@ Eigen::VectorXd JointBound::column(Eigen::Index j) const {
 }
 
 /// P <- P - P H' S^-1 H P for all observations of a scan at once, with S = L L' and W = P H' L^-T.
-bool JointBound::correct(const Pose& pose, std::span<const Seen> landmarks) {
+bool JointBound::correct(const Pose& pose, std::span<const SeenLandmark> landmarks) {
   const auto m = 2 * static_cast<Eigen::Index>(landmarks.size());
   Eigen::MatrixXd gain(size_, m);  // P H'
   Eigen::MatrixXd S(m, m);
   std::vector<LinearisedDetection> observations;
-  for (const Seen& landmark : landmarks) {
+  for (const SeenLandmark& landmark : landmarks) {
     const auto i = 2 * static_cast<Eigen::Index>(observations.size());
     const auto observation = linearised_detection(sensor_, pose, landmark.point);
     if (!observation) return false;
@@ -113,7 +113,7 @@ bool JointBound::correct(const Pose& pose, std::span<const Seen> landmarks) {
   return true;
 }
 
-void JointBound::append(const Pose& pose, const Seen& landmark) {
+void JointBound::append(const Pose& pose, const SeenLandmark& landmark) {
   const auto seen = linearised_detection(sensor_, pose, landmark.point);
   const auto placed = placed_landmark(sensor_, pose, seen->value);
   const Matrix23& Gx = placed->by_pose;
@@ -125,7 +125,7 @@ void JointBound::append(const Pose& pose, const Seen& landmark) {
   size_ += 2;
 }
 
-void JointBound::append_unknown(const Seen& landmark) {
+void JointBound::append_unknown(const SeenLandmark& landmark) {
   row_of(landmark.identity) = size_;
   joint_.block(size_, 0, 2, size_).setZero();
   joint_.block<2, 2>(size_, size_) = kUnknown * kUnknown * Eigen::Matrix2d::Identity();

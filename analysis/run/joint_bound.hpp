@@ -32,11 +32,11 @@ class JointBound {
   Pose move(const Pose& pose, const Control& control, double duration);
   /// A scan from the true `pose` that detects `landmarks`, true positions with their identities.
   /// False if the noise is too small for the computation; the bound is unusable then.
-  struct Seen {
+  struct SeenLandmark {
     std::size_t identity = 0;
     Point point;
   };
-  [[nodiscard]] bool scan(const Pose& pose, std::span<const Seen> landmarks);
+  [[nodiscard]] bool scan(const Pose& pose, std::span<const SeenLandmark> landmarks);
 
   const Eigen::Matrix3d& pose() const { return pose_; }
   /// [m^2] Mean squared position error over the landmarks that the detections locate; NaN if there
@@ -45,9 +45,9 @@ class JointBound {
 
  private:
   void finish_motion();
-  [[nodiscard]] bool correct(const Pose& pose, std::span<const Seen> landmarks);
-  void append(const Pose& pose, const Seen& landmark);
-  void append_unknown(const Seen& landmark);
+  [[nodiscard]] bool correct(const Pose& pose, std::span<const SeenLandmark> landmarks);
+  void append(const Pose& pose, const SeenLandmark& landmark);
+  void append_unknown(const SeenLandmark& landmark);
   Eigen::VectorXd column(Eigen::Index j) const;
   Eigen::Index& row_of(std::size_t identity) { return row_[identity]; }
 

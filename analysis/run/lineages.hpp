@@ -115,7 +115,7 @@ class DiversityCounter {
 
  private:
   /// A resampling, and the number of ancestors before it.
-  struct Step {
+  struct ResamplingStep {
     std::size_t scan;
     std::uint32_t ancestors;
   };
@@ -132,7 +132,7 @@ class DiversityCounter {
   Diversity result_;
   std::vector<std::size_t> resampled_;   ///< find_resamplings()
   AncestorSet set_;                      ///< being walked back
-  std::vector<Step> path_;               ///< of the last resampling, the latest first
+  std::vector<ResamplingStep> path_;     ///< of the last resampling, the latest first
   std::vector<std::uint32_t> root_;      ///< {particle} ancestor at the start
   std::vector<std::uint32_t> previous_;  ///< root_ one resampling earlier
 };

@@ -121,22 +121,22 @@ void score_by_identity(const FinalMap& map, std::span<const Eigen::Vector2d> lan
 
 using Points = std::vector<Eigen::Vector2d>;
 
-struct Pair {
+struct BeaconPair {
   double squared = 0.0;  ///< [m^2]
   std::size_t landmark = 0, beacon = 0;
 };
 
-std::vector<Pair> near_pairs(std::span<const Eigen::Vector2d> map,
-                             std::span<const Eigen::Vector2d> beacons,
-                             const RigidMotion& alignment) {
-  std::vector<Pair> pairs;
+std::vector<BeaconPair> near_pairs(std::span<const Eigen::Vector2d> map,
+                                   std::span<const Eigen::Vector2d> beacons,
+                                   const RigidMotion& alignment) {
+  std::vector<BeaconPair> pairs;
   for (std::size_t b = 0; b < beacons.size(); ++b) {
     for (std::size_t l = 0; l < map.size(); ++l) {
       const double squared = (alignment(map[l]) - beacons[b]).squaredNorm();
       if (squared <= kFoundWithin * kFoundWithin) pairs.push_back({squared, l, b});
     }
   }
-  std::ranges::stable_sort(pairs, {}, &Pair::squared);
+  std::ranges::stable_sort(pairs, {}, &BeaconPair::squared);
   return pairs;
 }
 
@@ -193,7 +193,7 @@ BeaconScores beacon_scores(std::span<const Eigen::Vector2d> map,
                            std::span<const Eigen::Vector2d> beacons, const RigidMotion& alignment) {
   std::vector<bool> landmark_taken(map.size()), beacon_found(beacons.size());
   Points estimated, surveyed;
-  for (const Pair& pair : near_pairs(map, beacons, alignment)) {
+  for (const BeaconPair& pair : near_pairs(map, beacons, alignment)) {
     if (landmark_taken[pair.landmark] || beacon_found[pair.beacon]) continue;
     landmark_taken[pair.landmark] = beacon_found[pair.beacon] = true;
     estimated.push_back(map[pair.landmark]);

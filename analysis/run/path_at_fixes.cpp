@@ -38,7 +38,7 @@ bool PathAtFixes::has_start() const {
   return !used_.position.empty() && (used_.position.front() - start).norm() < kSame;
 }
 
-PathAtFixes::Place PathAtFixes::place_of(double time, std::span<const double> times) {
+PathAtFixes::FixPlace PathAtFixes::place_of(double time, std::span<const double> times) {
   const auto next = std::ranges::lower_bound(times, time);
   const double before = next == times.begin() ? 0.0 : *(next - 1);
   const double length = *next - before;
@@ -49,7 +49,7 @@ PathAtFixes::Place PathAtFixes::place_of(double time, std::span<const double> ti
 std::vector<Pose> PathAtFixes::interpolate(std::span<const double> path) const {
   std::vector<Pose> poses;
   poses.reserve(places_.size());
-  for (const Place& place : places_) {
+  for (const FixPlace& place : places_) {
     const Pose before = place.next == 0 ? start_ : pose_at(path, place.next - 1);
     poses.push_back(between(before, pose_at(path, place.next), place.share));
   }

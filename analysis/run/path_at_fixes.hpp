@@ -33,12 +33,12 @@ class PathAtFixes {
   const std::vector<Eigen::Matrix3d>& covariances() const { return used_.covariance; }
 
   /// Between row `next` - 1 (the start for 0) and row `next`.
-  struct Place {
+  struct FixPlace {
     std::size_t next = 0;
     double share = 0.0;  ///< of the way, in [0, 1]
   };
   /// The place of each fix.
-  const std::vector<Place>& places() const { return places_; }
+  const std::vector<FixPlace>& places() const { return places_; }
   /// Whether the start was taken from a fix: whether the two agree to a micrometre.
   bool has_start() const;
 
@@ -46,11 +46,11 @@ class PathAtFixes {
   std::vector<Pose> interpolate(std::span<const double> path) const;
 
  private:
-  static Place place_of(double time, std::span<const double> times);
+  static FixPlace place_of(double time, std::span<const double> times);
 
   Pose start_;
   ReferencePath used_;
-  std::vector<Place> places_;
+  std::vector<FixPlace> places_;
 };
 
 }  // namespace montecarta::analysis

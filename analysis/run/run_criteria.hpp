@@ -4,7 +4,7 @@
 #include "analysis/run/map_scores.hpp"
 #include "analysis/run/path_at_fixes.hpp"
 #include "analysis/run/run_metrics.hpp"
-#include "engine/core/margin.hpp"
+#include "engine/core/judgement.hpp"
 
 #include <Eigen/Core>
 
@@ -25,7 +25,7 @@ struct DriveCriteria {
 /// Criteria for runs, common to all cells of a file, which must outlive them.
 struct RunCriteria {
   std::span<const double> times;  ///< [s] of the scans
-  double level = 0.95;            ///< of NEES bounds
+  double level = kUsualLevel;     ///< of NEES bounds
   double within = kUsualMargin;   ///< margin of the verdict (judge())
   std::vector<PathAtFixes> references;
   std::vector<Eigen::Vector2d> beacons;        ///< [m]

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/core/margin.hpp"
+#include "engine/core/judgement.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -17,9 +17,6 @@ std::optional<std::string> study_setting(const std::string& study_text, std::str
 /// study.within of a resolved study, else kUsualMargin. Throws StudyError if it is no number from
 /// kLeastMargin to kMostMargin.
 double margin_in(const std::string& study_text);
-
-/// Value of study.until if cells stop when their verdict is known.
-inline constexpr const char* kUntilVerdict = "verdict";
 
 /// Numbers of runs of the interim analyses in a study of `runs` runs, if its cells stop by verdict;
 /// else empty: the verdict is then taken once.

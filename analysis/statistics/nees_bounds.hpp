@@ -2,6 +2,7 @@
 #pragma once
 
 #include "analysis/statistics/interval.hpp"
+#include "engine/core/judgement.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -18,7 +19,7 @@ Interval nees_bounds(std::uint64_t runs, std::uint64_t dimension, double level);
 /// The planned study (STATISTICS 17).
 struct NeesTest {
   std::uint64_t dimension = 3;  ///< of the error
-  double level = 0.95;          ///< probability that a consistent filter is not rejected
+  double level = kUsualLevel;   ///< probability that a consistent filter is not rejected
   std::uint64_t scans = 1;      ///< independent ones in a run; 1: errors never change within a run
 };
 

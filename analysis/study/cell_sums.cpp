@@ -5,6 +5,7 @@
 #include "analysis/statistics/bootstrap.hpp"
 #include "analysis/statistics/spread.hpp"
 #include "analysis/statistics/sums.hpp"
+#include "analysis/study/registry.hpp"
 #include "engine/threads/in_order.hpp"
 
 #include <algorithm>
@@ -14,25 +15,11 @@
 namespace montecarta::analysis {
 namespace {
 
-/// Fills CellAnalysis::score_intervals, and NeesResult::average_interval of every NEES from its
-/// runs: one bootstrap over runs at `level`, and one over the judged runs where some are not.
+/// Fills CellAnalysis::score_intervals by one bootstrap over runs at `level`.
 void put_score_intervals(CellAnalysis& cell, double level) {
   std::vector<std::vector<double>> columns;
   for (const Score& score : all_scores()) columns.push_back(cell.scores.column(score.name));
-  for (const NeesResult& nees : cell.nees) {
-    columns.push_back(nees.series.unjudged_runs == 0 ? nees.series.run_averages
-                                                     : std::vector<double>(cell.complete, kNaN));
-  }
-  std::vector<Interval> intervals = bootstrap_means(columns, level);
-  const std::size_t scores = all_scores().size();
-  for (std::size_t k = 0; k < cell.nees.size(); ++k) {
-    NeesResult& nees = cell.nees[k];
-    nees.average_interval = nees.series.unjudged_runs == 0
-                                ? intervals[scores + k]
-                                : bootstrap_mean(nees.series.run_averages, level);
-  }
-  intervals.resize(scores);
-  cell.score_intervals = std::move(intervals);
+  cell.score_intervals = bootstrap_means(columns, level);
 }
 
 }  // namespace
@@ -187,7 +174,7 @@ std::vector<double> first_values(const ResultFile& file, const StoredCell& cell,
   for (std::size_t i = 0; i < runs; ++i) {
     if (status[i] == RunStatus::complete) complete.push_back(i);
   }
-  const RunCriteria criteria = criteria_of(file, 0.95);
+  const RunCriteria criteria = criteria_of(file, kUsualLevel);
   const RunReader reader(file, cell);
   std::vector<std::uint64_t> numbers;
   for (const std::size_t i : complete) numbers.push_back(file.runs()[i]);

@@ -32,7 +32,7 @@ void ErrorMoments::add(std::span<const Eigen::Vector3d> errors,
 
 ErrorsOverTime ErrorMoments::result() const {
   ErrorsOverTime found;
-  for (const Sums& sums : scans_) {
+  for (const ScanSums& sums : scans_) {
     for (int c = 0; c < 3; ++c) {
       const auto component = static_cast<std::size_t>(c);
       found.rms[component].push_back(std::sqrt(sums.squares(c) / sums.n));

@@ -48,16 +48,17 @@ class ErrorMoments {
   static constexpr auto parts() { return std::tuple(added(&ErrorMoments::scans_)); }
 
  private:
-  struct Sums {
+  struct ScanSums {
     double n = 0.0;
     Eigen::Vector3d error = Eigen::Vector3d::Zero();
     Eigen::Vector3d squares = Eigen::Vector3d::Zero();
     Eigen::Vector3d variances = Eigen::Vector3d::Zero();
     static constexpr auto parts() {
-      return std::tuple(added(&Sums::n, &Sums::error, &Sums::squares, &Sums::variances));
+      return std::tuple(
+          added(&ScanSums::n, &ScanSums::error, &ScanSums::squares, &ScanSums::variances));
     }
   };
-  std::vector<Sums> scans_;
+  std::vector<ScanSums> scans_;
 };
 
 }  // namespace montecarta::analysis

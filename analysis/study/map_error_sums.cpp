@@ -26,7 +26,7 @@ void MapErrorSums::add(const std::optional<MapScores>& run) {
   for (std::size_t l = 0; l < landmarks_.size(); ++l) {
     const LandmarkScore& score = run->landmarks[l];
     if (!score.in_map) continue;
-    Sums& sums = landmarks_[l];
+    LandmarkSums& sums = landmarks_[l];
     sums.squares += score.squared_error;
     ++sums.runs;
     if (!std::isfinite(score.nees)) continue;
@@ -55,7 +55,7 @@ MapErrors MapErrorSums::result(double level, bool known) const {
   if (!errors.missing.empty()) return errors;
   if (landmarks_.empty()) return errors;
   errors.undefined = undefined_;
-  for (const Sums& sums : landmarks_) {
+  for (const LandmarkSums& sums : landmarks_) {
     LandmarkErrors one{.runs = sums.runs, .valid = sums.valid};
     if (sums.runs > 0) one.rms = std::sqrt(sums.squares / sums.runs);
     if (sums.valid > 0) {

@@ -47,16 +47,17 @@ class MapErrorSums {
   }
 
  private:
-  struct Sums {
+  struct LandmarkSums {
     double squares = 0.0, nees = 0.0;
     std::uint32_t runs = 0, valid = 0;
     static constexpr auto parts() {
-      return std::tuple(added(&Sums::squares, &Sums::nees, &Sums::runs, &Sums::valid));
+      return std::tuple(added(&LandmarkSums::squares, &LandmarkSums::nees, &LandmarkSums::runs,
+                              &LandmarkSums::valid));
     }
   };
   std::string reason(bool known) const;
 
-  std::vector<Sums> landmarks_;  ///< {landmark}
+  std::vector<LandmarkSums> landmarks_;  ///< {landmark}
   std::size_t n_runs_ = 0, n_maps_ = 0, undefined_ = 0;
 };
 

@@ -39,6 +39,7 @@ class NeesAccumulator {
 
  private:
   NeesSeries series(double level) const;
+  Interval interval_of_mean(double level) const;
 
   ErrorBlock block_ = ErrorBlock::pose;
   Moments moments_ = Moments::spread;

@@ -33,7 +33,7 @@ struct NeesResult {
   Moments moments = Moments::spread;
   NeesSeries series;
   double mean = kNaN;              ///< of series.run_averages
-  Interval average_interval = {};  ///< of the mean over infinitely many runs (bootstrap)
+  Interval average_interval = {};  ///< of the mean over infinitely many runs
   double share_above = 0.0;        ///< of scans with a valid run: above the bounds of a scan
   double share_below = 0.0;        ///< below them
 

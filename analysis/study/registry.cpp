@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The list of metrics, and the scores, numbers, sections and figures of all of them.
+#include "analysis/study/registry.hpp"
+
 #include "analysis/study/cell_analysis.hpp"
 #include "analysis/study/metric.hpp"
 #include "analysis/study/score_table.hpp"

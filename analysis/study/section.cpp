@@ -28,8 +28,8 @@ Section section_of(std::string_view name, const Values& values) {
   return section;
 }
 
-const std::vector<Place>& reading_order() {
-  static const std::vector<Place> order = {
+const std::vector<SectionPlace>& reading_order() {
+  static const std::vector<SectionPlace> order = {
       {"title", {}, Section::Shown::open},
       {"cards", {}, Section::Shown::open},
       {"drive", {}, Section::Shown::open},

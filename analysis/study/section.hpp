@@ -70,7 +70,7 @@ struct Section {
 Section section_of(std::string_view name, const Values& values = {});
 
 /// The place of a section with its figures.
-struct Place {
+struct SectionPlace {
   std::string section;
   std::vector<std::string> figures = {};          ///< before the one that is called as the section
   Section::Shown shown = Section::Shown::folded;  ///< on the page
@@ -78,6 +78,6 @@ struct Place {
 
 /// The order of the sections on the page and on a terminal. Sections and figures without a place
 /// come behind them.
-const std::vector<Place>& reading_order();
+const std::vector<SectionPlace>& reading_order();
 
 }  // namespace montecarta::analysis

@@ -11,7 +11,7 @@
 namespace montecarta::analysis {
 
 /// Level of the bounds in sums that are stored.
-inline constexpr double kStoredLevel = 0.95;
+inline constexpr double kStoredLevel = kUsualLevel;
 
 /// Number of runs that a file has, in rows or in sums.
 std::uint64_t runs_in(const ResultFile& file);

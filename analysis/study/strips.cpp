@@ -50,20 +50,20 @@ bool is_in_band(double ratio, const Interval& band) {
 }
 
 /// Places that share a column.
-struct Stretch {
+struct SameColour {
   std::size_t begin, end;
 };
 
-std::vector<Stretch> columns_of(std::size_t places) {
+std::vector<SameColour> columns_of(std::size_t places) {
   const std::size_t columns = std::min(places, kMostStripColumns);
-  std::vector<Stretch> stretches;
+  std::vector<SameColour> stretches;
   for (std::size_t c = 0; c < columns; ++c)
     stretches.push_back({c * places / columns, (c + 1) * places / columns});
   return stretches;
 }
 
 /// Left edges of the columns: the first is `from`, the others lie midway between two places.
-std::vector<double> begins_of(const std::vector<Stretch>& columns,
+std::vector<double> begins_of(const std::vector<SameColour>& columns,
                               const std::vector<double>& places, double from) {
   std::vector<double> begins = {from};
   for (std::size_t c = 1; c < columns.size(); ++c)
@@ -72,7 +72,7 @@ std::vector<double> begins_of(const std::vector<Stretch>& columns,
 }
 
 /// The place in a column that decides its colour (add_strips()).
-std::size_t deciding_place(const StripRow& row, const Stretch& column) {
+std::size_t deciding_place(const StripRow& row, const SameColour& column) {
   const auto weight = [&](std::size_t k) {
     const double ratio = row.ratios[k];
     return std::pair(!is_in_band(ratio, row.band[k]), std::abs(std::log(ratio)));
@@ -85,9 +85,9 @@ std::size_t deciding_place(const StripRow& row, const Stretch& column) {
   return found;
 }
 
-ChartStrips::Row thinned(const StripRow& row, const std::vector<Stretch>& columns) {
+ChartStrips::Row thinned(const StripRow& row, const std::vector<SameColour>& columns) {
   ChartStrips::Row thin{row.name, {}, {}, row.note};
-  for (const Stretch& column : columns) {
+  for (const SameColour& column : columns) {
     const std::size_t k = deciding_place(row, column);
     thin.ratios.push_back(row.ratios[k]);
     thin.levels.push_back(strip_level(row.ratios[k], row.band[k]));
@@ -129,7 +129,7 @@ const std::vector<StripTick>& strip_ticks() {
 void add_strips(const std::vector<StripPanel>& panels, const std::vector<double>& places,
                 Figure& figure) {
   if (panels.empty() || panels.front().rows.empty()) return;
-  const std::vector<Stretch> columns = columns_of(places.size());
+  const std::vector<SameColour> columns = columns_of(places.size());
   for (const StripPanel& panel : panels) {
     const ChartAxis axis{false, static_cast<double>(panel.rows.size()) - 0.5, -0.5};
     ChartPanel& chart = figure.chart.panels.emplace_back(

@@ -40,7 +40,7 @@ struct StudyAnalysis {
   std::uint64_t seed = 0;
   std::uint64_t study_runs = 0;      ///< of the whole study
   std::uint64_t runs_here = 0;       ///< held by the file
-  double level = 0.95;               ///< of all NEES bounds
+  double level = kUsualLevel;        ///< of all NEES bounds
   double within = kUsualMargin;      ///< what counts as consistent (judge())
   std::vector<std::uint64_t> looks;  ///< looks_in(): runs at each, where cells stop by verdict
   double duration = 0.0;             ///< [s] time of the last scan
@@ -62,7 +62,7 @@ struct StudyAnalysis {
 /// Analyses a result file run by run: memory does not grow with the number of runs. The same
 /// numbers come out for any number of threads. `within` is what counts as consistent (judge()); the
 /// study's own where it is not given. Throws StudyError where level is not inside (0, 1).
-StudyAnalysis analyze(const ResultFile& file, double level = 0.95,
+StudyAnalysis analyze(const ResultFile& file, double level = kUsualLevel,
                       const Parallel& parallel = Parallel::serial(),
                       std::optional<double> within = std::nullopt);
 

@@ -8,6 +8,7 @@
 #include "analysis/study/nees_result.hpp"
 #include "analysis/study/paired_runs.hpp"
 #include "analysis/study/prose.hpp"
+#include "analysis/study/registry.hpp"
 #include "analysis/study/score_table.hpp"
 #include "engine/errors.hpp"
 #include "engine/text/number_text.hpp"

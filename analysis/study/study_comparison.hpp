@@ -54,7 +54,8 @@ struct CellComparison {
 /// Every other cell against one.
 struct Comparisons {
   std::string baseline;
-  double level = 0.95;  ///< of intervals; tests are at 1 - level, by Holm over the whole table
+  double level =
+      kUsualLevel;  ///< of intervals; tests are at 1 - level, by Holm over the whole table
   std::vector<CellComparison> rows;  ///< score by score, in the order of the cells
 };
 

@@ -10,6 +10,7 @@
 #include "analysis/study/imported_notes.hpp"
 #include "analysis/study/metric.hpp"
 #include "analysis/study/prose.hpp"
+#include "analysis/verdict/sentence.hpp"
 #include "engine/numbers/angle.hpp"
 #include "engine/text/number_text.hpp"
 
@@ -123,7 +124,7 @@ Frame::Row numbers_of(const CellAnalysis& cell, const NeesResult& nees, double l
 }
 
 std::string ratio_text(const CellAnalysis& cell) {
-  if (tested_pose(cell) == nullptr) return "-";
+  if (tested_pose(cell) == nullptr || cell.verdict.beside.repeated_runs > 0) return "-";
   return with_interval(cell.verdict.ratio_estimate(), cell.verdict.ratio());
 }
 

@@ -13,7 +13,7 @@ namespace montecarta::analysis {
 
 /// How a verdict is taken that may be one of several in a study.
 struct InterimAnalysis {
-  double level = 0.95;                    ///< of all analyses together
+  double level = kUsualLevel;             ///< of all analyses together
   double within = kUsualMargin;           ///< margin of the verdict
   std::vector<std::uint64_t> looks = {};  ///< runs at each analysis; empty: there is one
   double share_of_runs = 1.0;             ///< of the study's that are at hand: less in a shard

@@ -1,22 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The verdict in words: short for a table, and as a sentence with time and component.
+#include "analysis/verdict/sentence.hpp"
+
 #include "analysis/statistics/interval.hpp"
 #include "analysis/verdict/verdict.hpp"
 #include "engine/text/number_text.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace montecarta::analysis {
 namespace {
 
 constexpr double kMostToPrint = 1e20;  // beyond, a factor has no meaning but that it is large
 
-enum class Direction { above, below };
-constexpr std::array kDirections = {Direction::above, Direction::below};
+constexpr std::array kSides = {Side::above, Side::below};
 
 /// A member with its family.
-struct Shown {
+struct ShownMember {
   const FamilyTest* test;
   const Member* member;
 };
@@ -27,28 +29,47 @@ bool is_rejected(const Verdict& verdict, Family family) {
 }
 
 /// Members of a family of ratios that are shown to be off in one direction.
-std::vector<const Member*> shown_in(const FamilyTest* test, Direction direction) {
+std::vector<const Member*> shown_in(const FamilyTest* test, Side direction) {
   std::vector<const Member*> all;
   if (test == nullptr) return all;
   for (const Member& member : test->members) {
     const bool is_above = member.estimate > 1.0;
-    if (test->is_shown(member) && is_above == (direction == Direction::above)) {
+    if (test->is_shown(member) && is_above == (direction == Side::above)) {
       all.push_back(&member);
     }
   }
   return all;
 }
 
+/// The interval at which a member is shown; of all together if none is known.
+const Interval& shown_interval(const Member& member) {
+  return std::isnan(member.shown.lower) ? member.simultaneous : member.shown;
+}
+
+/// Whether a ratio is shown to be outside [1/r, r] of the margin r.
+bool is_beyond(const Member& member, double margin) {
+  const Interval& ratio = shown_interval(member);
+  return ratio.lower > margin || ratio.upper < 1.0 / margin;
+}
+
+bool is_within(const Interval& ratio, double margin) {
+  return ratio.lower >= 1.0 / margin && ratio.upper <= margin;
+}
+
 /// The leading member for a direction: the size if it is shown, else the member of the least
-/// p-value of other ratios, of single scans only if nothing else is shown.
-std::optional<Shown> leading(const Verdict& verdict, Direction direction) {
-  std::optional<Shown> best;
+/// p-value of other ratios, of single scans only if nothing else is shown. Where the size lies
+/// within the margin, one of the others leads that is shown to be beyond it.
+std::optional<ShownMember> leading(const Verdict& verdict, Side direction) {
+  std::optional<ShownMember> best;
   for (const FamilyTest& test : verdict.families) {
-    const bool is_decided =
-        best && (best->test->family == Family::size || test.family == Family::scan);
-    if (!is_ratio(test.family) || is_decided) continue;
+    const bool is_size = best && best->test->family == Family::size &&
+                         !is_within(best->member->interval, verdict.within);
+    if (!is_ratio(test.family) || is_size || (best && test.family == Family::scan)) continue;
     for (const Member* member : shown_in(&test, direction)) {
-      if (!best || member->p < best->member->p) best = Shown{&test, member};
+      const bool is_replaced = best && best->test->family == Family::size
+                                   ? is_beyond(*member, verdict.within)
+                                   : !best || member->p < best->member->p;
+      if (is_replaced) best = ShownMember{&test, member};
     }
   }
   return best;
@@ -61,17 +82,12 @@ std::string from_to(double lower, double upper) {
   return from == to ? from : from + " to " + to;
 }
 
-/// The interval at which a member is shown; of all together if none is known.
-const Interval& shown_interval(const Member& member) {
-  return std::isnan(member.shown.lower) ? member.simultaneous : member.shown;
-}
-
 /// "1.28 to 2.25", larger than 1 in both directions. The size has an interval of its own; others
 /// were chosen among many.
-std::string factor_text(const Shown& shown, Direction direction, bool is_slight = false) {
+std::string factor_text(const ShownMember& shown, Side direction, bool is_slight = false) {
   const bool is_alone = shown.test->family == Family::size || is_slight;
   Interval ratio = is_alone ? shown.member->interval : shown_interval(*shown.member);
-  if (direction == Direction::below) ratio = {1.0 / ratio.upper, 1.0 / ratio.lower};
+  if (direction == Side::below) ratio = {1.0 / ratio.upper, 1.0 / ratio.lower};
   return from_to(std::max(ratio.lower, 1.0), ratio.upper);
 }
 
@@ -90,7 +106,7 @@ std::string place_of(const Member& member, bool is_of_component) {
   return name + (member.from == member.to ? " " : " from ") + name_of(time);
 }
 
-std::string place_of(const Shown& shown) {
+std::string place_of(const ShownMember& shown) {
   const Family family = shown.test->family;
   if (family == Family::size) return "";
   const bool is_of_component =
@@ -99,7 +115,7 @@ std::string place_of(const Shown& shown) {
 }
 
 /// "from 138 s on"; empty where no stretch is shown, or where stretches do not differ.
-std::string when(const Verdict& verdict, Direction direction) {
+std::string when(const Verdict& verdict, Side direction) {
   const FamilyTest* stretches = verdict.find(Family::stretch);
   const auto shown = shown_in(stretches, direction);
   if (shown.empty()) return "";
@@ -141,7 +157,7 @@ std::string listed(const std::vector<std::string>& names) {
 }
 
 /// ", mainly in heading (1.9 to 2.4 times)"; empty where components do not differ.
-std::string where(const Verdict& verdict, Direction direction) {
+std::string where(const Verdict& verdict, Side direction) {
   const FamilyTest* components = verdict.find(Family::component);
   const auto farthest = farthest_of(shown_in(components, direction));
   if (farthest.empty() || farthest.size() == components->members.size()) return "";
@@ -153,6 +169,8 @@ std::string where(const Verdict& verdict, Direction direction) {
   std::vector<std::string> names;
   for (const Member* one : farthest) names.push_back(one->name);
   if (names.size() > 1) return ", mainly in " + listed(names);
+  if (farthest.front()->estimate == 0.0)
+    return ", mainly " + in_component(names.front()) + ", where its errors are all exactly 0";
   return ", mainly " + in_component(names.front()) + " (" +
          factor_text({components, farthest.front()}, direction) + " times)";
 }
@@ -181,8 +199,12 @@ std::string bias_of(const Member& member) {
 }
 
 std::string correlation_of(const Member& member) {
-  return "an unreported correlation of " + signed_text(shown_interval(member)) + " between " +
-         member.name + place_of(member, false);
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Interval found = shown_interval(member);  // an end beyond 1 excludes nothing
+  if (found.lower < -1.0) found.lower = -kInfinity;
+  if (found.upper > 1.0) found.upper = kInfinity;
+  return "an unreported correlation of " + signed_text(found) + " between " + member.name +
+         place_of(member, false);
 }
 
 /// Biases or correlations: over the whole drive if those are shown, else in stretches, of each sign
@@ -202,7 +224,9 @@ std::string spread_words(const Verdict& verdict) {
   const FamilyTest* test = verdict.find(Family::between_runs);
   if (test == nullptr || !test->is_rejected) return "";
   const Interval& found = test->members.front().interval;
-  return "runs have scales of their own (standard deviation " + signed_text(found) + ")";
+  return "runs have scales of their own (their mean squared errors differ by a standard deviation "
+         "of " +
+         signed_text(found) + ")";
 }
 
 /// "its errors have heavier tails than a Gaussian (the largest is 12.3 deviations, of heading of
@@ -247,9 +271,9 @@ std::string bet_words(const Verdict& verdict) {
 
 /// "on average its squared errors are 1.67 times what it claims (95 %: 1.28 to 2.25), shown from
 /// 138 s on, mainly forward (2.1 to 3.4 times)"; empty if nothing is shown in this direction.
-std::string ratio_sentence(const Verdict& verdict, Direction direction) {
+std::string ratio_sentence(const Verdict& verdict, Side direction) {
   const auto shown = leading(verdict, direction);
-  const bool is_above = direction == Direction::above;
+  const bool is_above = direction == Side::above;
   if (!shown) return "";
   const std::string factor = factor_text(*shown, direction);
   const std::string than = is_above ? " times what it claims" : " times smaller than it claims";
@@ -265,9 +289,8 @@ std::string ratio_sentence(const Verdict& verdict, Direction direction) {
 
 /// Everything that is shown, the spread between runs first where directions differ.
 std::string shown_sentence(const Verdict& verdict) {
-  const std::string spread = spread_words(verdict),
-                    above = ratio_sentence(verdict, Direction::above),
-                    below = ratio_sentence(verdict, Direction::below);
+  const std::string spread = spread_words(verdict), above = ratio_sentence(verdict, Side::above),
+                    below = ratio_sentence(verdict, Side::below);
   const bool is_one_direction = above.empty() != below.empty();
   std::vector<std::string> phrases = {is_one_direction ? above + below : spread,
                                       is_one_direction ? spread : above,
@@ -279,14 +302,14 @@ std::string shown_sentence(const Verdict& verdict) {
 }
 
 /// "NEES 1.28 to 2.25 times too large in heading"
-std::string ratio_words(const Verdict& verdict, Direction direction) {
+std::string ratio_words(const Verdict& verdict, Side direction) {
   const auto shown = leading(verdict, direction);
   if (!shown) return "";
   const std::string time =
       shown->test->family == Family::size ? when(verdict, direction) : std::string();
   return "NEES " + factor_text(*shown, direction) +
-         (direction == Direction::above ? " times too large" : " times too small") +
-         place_of(*shown) + (time.empty() ? "" : ", " + time);
+         (direction == Side::above ? " times too large" : " times too small") + place_of(*shown) +
+         (time.empty() ? "" : ", " + time);
 }
 
 /// "; also bias, between runs": families that are shown besides.
@@ -301,8 +324,8 @@ std::string also_words(const Verdict& verdict) {
 }
 
 std::string shown_words(const Verdict& verdict) {
-  const std::string above = ratio_words(verdict, Direction::above);
-  const std::string below = ratio_words(verdict, Direction::below);
+  const std::string above = ratio_words(verdict, Side::above);
+  const std::string below = ratio_words(verdict, Side::below);
   std::string ratios = above.empty() ? below : above;
   if (!above.empty() && !below.empty()) ratios += ", " + below.substr(below.find(' ') + 1);
   const std::string also = also_words(verdict);
@@ -315,10 +338,10 @@ std::string shown_words(const Verdict& verdict) {
 /// deviation within the margin is shown.
 std::string slight_words(const Verdict& verdict) {
   std::string words;
-  for (const Direction direction : kDirections) {
+  for (const Side direction : kSides) {
     const auto shown = leading(verdict, direction);
     if (!shown) continue;
-    const bool is_above = direction == Direction::above;
+    const bool is_above = direction == Side::above;
     words += std::string(", slightly ") + (is_above ? "optimistic" : "conservative") +
              place_of(*shown) + " (" + factor_text(*shown, direction, true) + ")";
   }
@@ -411,22 +434,27 @@ std::string consistent_words(const Verdict& verdict) {
                         : tails);
 }
 
+/// Empty if there are enough runs to judge more than single scans.
+std::string scans_alone_words(const Verdict& verdict) {
+  if (complete_runs(verdict) >= kFewestJudgedRuns) return "";
+  return "of fewer than " + std::to_string(kFewestJudgedRuns) +
+         " runs single scans alone are judged";
+}
+
 std::string undecided_words(const Verdict& verdict) {
   const std::uint64_t runs = complete_runs(verdict);
-  std::string words = "undecided: " + std::to_string(runs) +
-                      (runs == 1 ? " run does" : " runs do") + " not show whether it is " +
-                      within_words(verdict);
-  if (runs < kFewestJudgedRuns) {
-    return words + "; of fewer than " + std::to_string(kFewestJudgedRuns) +
-           " runs single scans alone are judged";
-  }
-  return joined({words, more_runs_words(verdict), tail_words(verdict)});
+  const std::string words = "undecided: " + std::to_string(runs) +
+                            (runs == 1 ? " run does" : " runs do") + " not show whether it is " +
+                            within_words(verdict);
+  return joined({words, scans_alone_words(verdict), more_runs_words(verdict), tail_words(verdict)});
 }
 
 /// What the tests say.
 std::string tested_words(const Verdict& verdict) {
   const std::string slightly = is_slight(verdict) ? "slightly " : "";
-  const std::string open = is_slight(verdict) ? "; " + open_words(verdict) : "";
+  const std::string scans = scans_alone_words(verdict);
+  const std::string open =
+      (scans.empty() ? "" : "; " + scans) + (is_slight(verdict) ? "; " + open_words(verdict) : "");
   switch (verdict.of_tests) {
     case Answer::consistent:
       return consistent_words(verdict);

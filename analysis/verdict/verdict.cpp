@@ -102,24 +102,24 @@ bool is_outside(const Interval& interval, const Interval& margin) {
 }
 
 /// What the answer "consistent" needs of the members of a family.
-enum class Claim {
+enum class Deviation {
   is_inside,       ///< shown to be within the margin
   is_not_outside,  ///< not shown to be beyond it: they are too many to be shown inside
   none
 };
 
-Claim claim_of(Family family) {
+Deviation claim_of(Family family) {
   switch (family) {
     case Family::size:
     case Family::component:
     case Family::stretch:
     case Family::bias:
     case Family::correlation:
-      return Claim::is_inside;
+      return Deviation::is_inside;
     case Family::tails:
-      return Claim::none;
+      return Deviation::none;
     default:
-      return Claim::is_not_outside;
+      return Deviation::is_not_outside;
   }
 }
 
@@ -133,7 +133,7 @@ Interval margin_of(Family family, double within) {
 }
 
 bool is_beyond_margin(Family family, const Member& member, double within) {
-  return claim_of(family) != Claim::none &&
+  return claim_of(family) != Deviation::none &&
          is_outside(member.simultaneous, margin_of(family, within));
 }
 
@@ -147,7 +147,7 @@ bool is_any_member(const Verdict& verdict, const Predicate& predicate) {
 
 bool is_within_margin(const Verdict& verdict) {
   const auto spoils = [&](Family family, const Member& member) {
-    const bool is_proved = claim_of(family) != Claim::is_inside ||
+    const bool is_proved = claim_of(family) != Deviation::is_inside ||
                            is_inside(member.interval, margin_of(family, verdict.within));
     return !is_proved || is_beyond_margin(family, member, verdict.within);
   };
@@ -159,7 +159,7 @@ Answer answer_of_tests(const Verdict& verdict) {
   if (is_within_margin(verdict)) return Answer::consistent;
   bool is_above = false, is_below = false, is_rejected = false;
   for (const FamilyTest& test : verdict.families) {
-    if (claim_of(test.family) == Claim::none) continue;
+    if (claim_of(test.family) == Deviation::none) continue;
     is_rejected = is_rejected || test.is_rejected;
     if (!is_ratio(test.family)) continue;
     for (const Member& member : test.members) {
@@ -200,7 +200,7 @@ double half_of(Family family, const Member& member, const Interval& interval) {
 /// one that chance explains. `chance` is that of the farthest of all members, in half intervals.
 double growth_until_inside(Family family, const Member& member, double within, double chance) {
   const Interval margin = margin_of(family, within);
-  if (claim_of(family) != Claim::is_inside || is_inside(member.interval, margin)) return 1.0;
+  if (claim_of(family) != Deviation::is_inside || is_inside(member.interval, margin)) return 1.0;
   const double half = half_of(family, member, member.interval);
   const double distance = std::abs(on_scale(family, member.estimate));
   constexpr double kBeyondChance = 1.5;  // a deviation that chance hardly explains
@@ -212,7 +212,7 @@ double growth_until_inside(Family family, const Member& member, double within, d
 /// The same until a member is shown to be beyond the margin; NaN if chance explains that its
 /// estimate is.
 double growth_until_outside(Family family, const Member& member, double within, double chance) {
-  if (claim_of(family) == Claim::none) return kNaN;
+  if (claim_of(family) == Deviation::none) return kNaN;
   const double own = half_of(family, member, member.interval);
   const double beyond = std::abs(on_scale(family, member.estimate)) - chance * own -
                         on_scale(family, margin_of(family, within).upper);
@@ -231,7 +231,7 @@ double chance_of_farthest(double members, double level) {
 double members_inside(const Verdict& verdict) {
   double members = 0.0;
   for (const FamilyTest& test : verdict.families) {
-    if (claim_of(test.family) == Claim::is_inside)
+    if (claim_of(test.family) == Deviation::is_inside)
       members += static_cast<double>(test.members.size());
   }
   return members;

@@ -138,7 +138,7 @@ struct BesideTests {
 struct Verdict {
   Answer answer = Answer::untested;
   Answer of_tests = Answer::untested;  ///< by the tests alone, without regard to `beside`
-  double level = 0.95;                 ///< of all tests together
+  double level = kUsualLevel;          ///< of all tests together
   double within = kUsualMargin;        ///< the margin r: ratios in [1/r, r] are consistent
   std::vector<FamilyTest> families = {};
   BesideTests beside = {};
@@ -167,13 +167,6 @@ Verdict judge(std::vector<FamilyTest> families, double level, double within, std
 
 /// Refuses a filter by bets (STATISTICS 18), unless it is shown to be consistent.
 void refuse_by_bets(Side side, Verdict& verdict);
-
-/// For a table: "consistent within 1.1", "optimistic: NEES 1.28 to 2.25 times too large", ...
-/// Failed runs and unusable samples are part of it.
-std::string in_words(const Verdict& verdict);
-
-/// One sentence on the cell `label`, with when and in which component.
-std::string sentence(const std::string& label, const Verdict& verdict);
 
 /// Decision of a script on a filter: accept it, reject it, or wait for more runs.
 enum class GateAnswer : std::uint8_t { consistent, inconsistent, undecided };

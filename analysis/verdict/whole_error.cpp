@@ -192,7 +192,7 @@ void WholeError::add_correlations(const WhitenedRun& run) {
   means.end_run(whitened_mean_);
 }
 
-void WholeError::Largest::add(double error, const Place& where) {
+void WholeError::Largest::add(double error, const ErrorPlace& where) {
   if (std::isnan(error)) return;
   ++samples;
   if (!(std::abs(error) > deviations)) return;

@@ -88,16 +88,16 @@ class WholeError {
   };
   /// The largest error of all, in deviations of its component.
   struct Largest {
-    struct Place {
+    struct ErrorPlace {
       std::uint64_t run = 0, scan = 0, component = 0;
       static constexpr auto members() {
-        return std::tuple(&Place::run, &Place::scan, &Place::component);
+        return std::tuple(&ErrorPlace::run, &ErrorPlace::scan, &ErrorPlace::component);
       }
     };
     double deviations = 0.0;
-    Place place = {};
+    ErrorPlace place = {};
     std::uint64_t samples = 0;  ///< among which it is the largest
-    void add(double error, const Place& where);
+    void add(double error, const ErrorPlace& where);
     void merge(const Largest& next);
     static constexpr auto members() {
       return std::tuple(&Largest::deviations, &Largest::place, &Largest::samples);

@@ -27,7 +27,7 @@ std::size_t last_alive(Weights weights) {
 }
 
 /// Consecutive particles, and the new particles [first_child, end) that descend from them.
-struct Family {
+struct DescendantRow {
   std::size_t first, last;
   double sum_before;  ///< sum of the shares of all particles before the first
   std::size_t first_child, end;
@@ -36,7 +36,7 @@ struct Family {
 /// Parent i is the first particle up to which the shares sum to more than place(i). The places must
 /// be in increasing order.
 template <class Share, class Place>
-void sweep(const Family& family, const Share& share, const Place& place, Parents parents) {
+void sweep(const DescendantRow& family, const Share& share, const Place& place, Parents parents) {
   std::size_t parent = family.first;
   double sum = family.sum_before + share(parent);
   for (std::size_t i = family.first_child; i < family.end; ++i) {

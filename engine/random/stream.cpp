@@ -5,7 +5,6 @@
 
 #include <boost/math/special_functions/erf.hpp>
 
-#include <algorithm>
 #include <bit>
 #include <numbers>
 
@@ -57,11 +56,6 @@ double RngStream::normal() {
   spare_ = spare;
   has_spare_ = true;
   return normal;
-}
-
-double normal_quantile(double probability) {
-  constexpr double kMost = 1.0 - 0x1p-53;  // the number before 1; probabilities may round to 1
-  return -std::numbers::sqrt2 * boost::math::erfc_inv(2.0 * std::min(probability, kMost));
 }
 
 double normal_tails(double deviations) {

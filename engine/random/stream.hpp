@@ -181,9 +181,6 @@ template <class Real>
   for (Pair<Real>& pair : pairs) pair = box_muller(pair);
 }
 
-/// The quantile of a standard normal variable at `probability` in (0, 1).
-double normal_quantile(double probability);
-
 /// Probability that a normal variable deviates from its mean by more than `deviations` standard
 /// deviations, on either side.
 double normal_tails(double deviations);

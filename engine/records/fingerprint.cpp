@@ -2,6 +2,7 @@
 #include "engine/records/fingerprint.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/text/visible_text.hpp"
 
 // Inlined, so that it is compiled for the instruction set of the other files, which makes it three
 // times faster than the shared library.
@@ -40,13 +41,7 @@ std::string sha256(std::string_view text) {
   const int done =
       EVP_Digest(text.data(), text.size(), digest.data(), &length, EVP_sha256(), nullptr);
   expect(done == 1 && length == 32, "libcrypto has no SHA-256");
-  constexpr std::string_view digits = "0123456789abcdef";
-  std::string hexadecimal;
-  for (unsigned i = 0; i < length; ++i) {
-    hexadecimal += digits[digest[i] >> 4U];
-    hexadecimal += digits[digest[i] & 15U];
-  }
-  return hexadecimal;
+  return hexadecimal({reinterpret_cast<const char*>(digest.data()), length});
 }
 
 }  // namespace montecarta::engine

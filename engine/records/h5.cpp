@@ -74,8 +74,8 @@ std::int64_t check(std::int64_t status, const char* what, const Handle& object,
 
 /// Throws StudyError if `elements` of `width` bytes are more than the file of `object` can hold,
 /// even if they are compressed.
-void expect_in_file(std::span<const unsigned long long> elements, std::size_t width,
-                    const Handle& object, const std::string& name) {
+void require_in_file(std::span<const unsigned long long> elements, std::size_t width,
+                     const Handle& object, const std::string& name) {
   constexpr unsigned long long kMostCompression = 1032;  // largest factor of deflate
   hsize_t most = 0;
   const Handle file(check(H5Iget_file_id(object.id()), "find the file of", object, name));
@@ -257,7 +257,7 @@ std::optional<std::string> value_of(const Handle& attribute) {
     return copy;
   }
   const std::size_t width = H5Tget_size(type.id());
-  expect_in_file({}, width, attribute, "");
+  require_in_file({}, width, attribute, "");
   std::string value(width, '\0');
   if (H5Aread(attribute.id(), type.id(), value.data()) < 0) return std::nullopt;
   return value.substr(0, value.find('\0'));
@@ -314,7 +314,7 @@ std::vector<std::uint64_t> numbers(const Handle& object, const std::string& name
   const Handle space(H5Aget_space(attribute.id()));
   const auto count =
       check(H5Sget_simple_extent_npoints(space.id()), "read attribute", object, name);
-  expect_in_file(std::array{static_cast<hsize_t>(count)}, sizeof(std::uint64_t), object, name);
+  require_in_file(std::array{static_cast<hsize_t>(count)}, sizeof(std::uint64_t), object, name);
   std::vector<std::uint64_t> values(static_cast<std::size_t>(count));
   check(H5Aread(attribute.id(), H5T_NATIVE_UINT64, values.data()), "read attribute", object, name);
   return values;
@@ -357,8 +357,8 @@ std::uint64_t count(const Shape& shape) {
   return std::accumulate(shape.begin(), shape.end(), std::uint64_t{1}, std::multiplies<>());
 }
 
-void expect_fit(std::uint64_t elements, Element element, std::span<std::byte> bytes,
-                const Handle& dataset) {
+void require_fit(std::uint64_t elements, Element element, std::span<std::byte> bytes,
+                 const Handle& dataset) {
   check(elements * size_of(element) == bytes.size() ? 0 : -1, "fit to its axes", dataset, "");
 }
 
@@ -411,7 +411,7 @@ Shape shape(const Handle& dataset) {
   const auto rank = check(H5Sget_simple_extent_ndims(space.id()), "read the shape of", dataset, "");
   std::vector<hsize_t> dimensions(static_cast<std::size_t>(rank));
   H5Sget_simple_extent_dims(space.id(), dimensions.data(), nullptr);
-  expect_in_file(dimensions, width_of(dataset), dataset, "");
+  require_in_file(dimensions, width_of(dataset), dataset, "");
   return {dimensions.begin(), dimensions.end()};
 }
 
@@ -424,7 +424,7 @@ std::optional<Element> element(const Handle& dataset) {
 }
 
 void read(const Handle& dataset, Element element, std::span<std::byte> bytes) {
-  expect_fit(count(shape(dataset)), element, bytes, dataset);
+  require_fit(count(shape(dataset)), element, bytes, dataset);
   const auto status =
       H5Dread(dataset.id(), native_type(element), H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data());
   check(status, "read", dataset, "");
@@ -436,7 +436,7 @@ void read_row(const Handle& dataset, std::uint64_t i, Element element, std::span
   Shape start(extent.size(), 0);
   start[0] = i;
   extent[0] = 1;
-  expect_fit(count(extent), element, bytes, dataset);
+  require_fit(count(extent), element, bytes, dataset);
   const Handle file_space(H5Dget_space(dataset.id()));
   H5Sselect_hyperslab(file_space.id(), H5S_SELECT_SET, start.data(), nullptr, extent.data(),
                       nullptr);

@@ -2,9 +2,11 @@
 #include "engine/records/open_result.hpp"
 
 #include "engine/errors.hpp"
-#include "engine/records/merge.hpp"
-#include "engine/records/result_writer.hpp"
+#include "engine/records/read_description.hpp"
+#include "engine/records/result_format.hpp"
+#include "engine/records/result_schema.hpp"
 #include "engine/records/seal.hpp"
+#include "engine/records/shard.hpp"
 
 #include <algorithm>
 #include <array>
@@ -17,8 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void refuse_existing(const fs::path& path) {
-  expect_free(path);
+void require_no_result(const fs::path& path) {
+  require_free(path);
   if (is_there(part_of(path))) {
     throw StudyError(
         part_of(path).string() +
@@ -90,12 +92,12 @@ OpenResult new_work(const fs::path& work, const ResultDescription& description, 
 
 }  // namespace
 
-ResultWriter ResultWriter::create(const fs::path& path, const StudyPlan& plan,
-                                  const TextPairs& provenance, Existing existing) {
+OpenResult create_result(const fs::path& path, const StudyPlan& plan, const TextPairs& provenance,
+                         Existing existing) {
   std::error_code ignored;
   if (fs::is_directory(path, ignored))
     throw StudyError(path.string() + ": is a folder: name a file in it");
-  if (existing == Existing::refuse) refuse_existing(path);
+  if (existing == Existing::refuse) require_no_result(path);
   ResultDescription description = describe(plan, provenance);
   if (is_there(path)) description.provenance.emplace_back(format::kReplaces, "an older result");
   std::optional<PosixFile> replaced;  // locked, so no process is writing the replaced work
@@ -103,7 +105,7 @@ ResultWriter ResultWriter::create(const fs::path& path, const StudyPlan& plan,
   OpenResult result =
       new_work(part_of(path), description, replaced ? Existing::replace : Existing::refuse);
   result.existing = existing;
-  return {path, std::move(result), plan};
+  return result;
 }
 
 namespace {
@@ -121,8 +123,8 @@ std::string range(const ResultDescription& result) {
   return std::to_string(result.runs.front()) + ":" + std::to_string(result.runs.back() + 1);
 }
 
-void expect_same(const fs::path& path, const ResultDescription& planned,
-                 const ResultDescription& stored) {
+void require_same(const fs::path& path, const ResultDescription& planned,
+                  const ResultDescription& stored) {
   if (const auto different = difference(planned, stored, path)) throw StudyError(*different);
   if (stored.runs == planned.runs) return;
   throw StudyError(path.string() + ": holds runs " + range(stored) + " (asked for: " +
@@ -144,8 +146,8 @@ bool holds_the_same(const fs::path& path, const ResultDescription& planned) {
 }
 
 /// Throws StudyError if finishing would replace a different file at `path` without --force.
-void expect_replaceable(const fs::path& path, const ResultDescription& planned,
-                        const ResultDescription& begun) {
+void require_replaceable(const fs::path& path, const ResultDescription& planned,
+                         const ResultDescription& begun) {
   if (!is_there(path) || begun_with_force(begun) || holds_the_same(path, planned)) return;
   throw StudyError(path.string() + ": exists and is not the result that " + part_of(path).string() +
                    " becomes (finishing would replace it): move it away, then continue with "
@@ -188,12 +190,12 @@ std::string differences(const TextPairs& begun, const TextPairs& now) {
 
 /// Appends a line to the log of resumptions, unless the log is full.
 void log_session(const OpenResult& result, const std::string& line) {
-  std::string log(format::kSittingsBytes, '\0');
-  result.file.read_at(result.slabs.sittings.offset, std::as_writable_bytes(std::span(log)));
+  std::string log(format::kSessionsBytes, '\0');
+  result.file.read_at(result.slabs.sessions.offset, std::as_writable_bytes(std::span(log)));
   const std::size_t length = std::min(log.find('\0'), log.size());
   if (length + line.size() + 1 > log.size()) return;
   (line + "\n").copy(log.data() + length, line.size() + 1);
-  result.file.write_at(result.slabs.sittings.offset, std::as_bytes(std::span(log)));
+  result.file.write_at(result.slabs.sessions.offset, std::as_bytes(std::span(log)));
 }
 
 OpenResult open_existing(const fs::path& path, PosixFile::Mode mode,
@@ -201,7 +203,7 @@ OpenResult open_existing(const fs::path& path, PosixFile::Mode mode,
   OpenResult result{PosixFile(path, mode), {}, {}, {}, {}};
   if (mode == PosixFile::Mode::write) result.file.lock();
   stored = read_description_of(path);
-  expect_same(path, planned, stored);
+  require_same(path, planned, stored);
   result.slabs = find_slabs(path, stored);
   for (const CellSlabs& cell : result.slabs.cells)
     result.status.push_back(read_statuses(result.file, cell, stored.runs.size()));
@@ -211,7 +213,7 @@ OpenResult open_existing(const fs::path& path, PosixFile::Mode mode,
 
 /// Throws StudyError if runs are missing although the file has its final name, e.g. because it was
 /// renamed.
-void expect_finished(const OpenResult& result) {
+void require_finished(const OpenResult& result) {
   std::size_t missing = 0;
   std::size_t all = 0;
   for (const auto& of_cell : result.status) {
@@ -229,7 +231,7 @@ void expect_finished(const OpenResult& result) {
 OpenResult finished_result(const fs::path& path, const ResultDescription& planned) {
   ResultDescription stored;
   OpenResult finished = open_existing(path, PosixFile::Mode::read, planned, stored);
-  expect_finished(finished);
+  require_finished(finished);
   finished.notes.push_back(path.string() + " is complete already");
   return finished;
 }
@@ -239,7 +241,7 @@ OpenResult continued_work(const fs::path& work, const fs::path& path,
                           const ResultDescription& planned) {
   ResultDescription stored;
   OpenResult result = open_existing(work, PosixFile::Mode::write, planned, stored);
-  expect_replaceable(path, planned, stored);
+  require_replaceable(path, planned, stored);
   if (is_there(path)) result.existing = Existing::replace;
   const std::size_t torn = reset_torn_runs(result);
   if (torn > 0) {
@@ -254,14 +256,11 @@ OpenResult continued_work(const fs::path& work, const fs::path& path,
 
 }  // namespace
 
-ResultWriter ResultWriter::resume(const fs::path& path, const StudyPlan& plan,
-                                  const TextPairs& provenance) {
+OpenResult resume_result(const fs::path& path, const StudyPlan& plan, const TextPairs& provenance) {
   const bool begun = is_there(part_of(path));
-  if (!begun && !is_there(path)) return create(path, plan, provenance, Existing::refuse);
+  if (!begun && !is_there(path)) return create_result(path, plan, provenance, Existing::refuse);
   const ResultDescription planned = describe(plan, provenance);
-  return {path,
-          begun ? continued_work(part_of(path), path, planned) : finished_result(path, planned),
-          plan};
+  return begun ? continued_work(part_of(path), path, planned) : finished_result(path, planned);
 }
 
 namespace {
@@ -359,10 +358,9 @@ void copy_complete_runs(const fs::path& other, const ResultDescription& planned,
 
 }  // namespace
 
-ResultWriter ResultWriter::attempt(const fs::path& path, const StudyPlan& plan,
-                                   const TextPairs& provenance) {
+OpenResult open_attempt(const fs::path& path, const StudyPlan& plan, const TextPairs& provenance) {
   const ResultDescription planned = describe(plan, provenance);
-  if (is_there(path)) return {path, finished_result(path, planned), plan};
+  if (is_there(path)) return finished_result(path, planned);
   const fs::path own = own_name(path);
   OpenResult result = take_checkpoint(path, own, planned)
                           ? continued_work(own, path, planned)
@@ -371,7 +369,7 @@ ResultWriter ResultWriter::attempt(const fs::path& path, const StudyPlan& plan,
   for (const fs::path& other : attempts_at(path)) {
     if (other != own && other.extension() != ".new") copy_complete_runs(other, planned, result);
   }
-  return {path, std::move(result), plan};
+  return result;
 }
 
 void rename_finished(OpenResult& attempt, const fs::path& path) {

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/core/plan.hpp"
 #include "engine/records/posix_file.hpp"
+#include "engine/records/result_description.hpp"
 #include "engine/records/result_layout.hpp"
+#include "engine/records/run_record.hpp"
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,6 +45,14 @@ std::optional<std::string> difference(const ResultDescription& a, const ResultDe
 
 /// Differences between two builds, worded for the user; empty if both round alike.
 std::vector<std::string> build_differences(const TextPairs& a, const TextPairs& b);
+
+/// Opens the result of a plan as ResultWriter::create(), resume() and attempt() say.
+OpenResult create_result(const std::filesystem::path& path, const StudyPlan& plan,
+                         const TextPairs& provenance, Existing existing);
+OpenResult resume_result(const std::filesystem::path& path, const StudyPlan& plan,
+                         const TextPairs& provenance);
+OpenResult open_attempt(const std::filesystem::path& path, const StudyPlan& plan,
+                        const TextPairs& provenance);
 
 /// Leaves an incomplete attempt to a later one, as OUT.h5.part unless that name is taken.
 void rename_finished(OpenResult& attempt, const std::filesystem::path& path);

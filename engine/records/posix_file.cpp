@@ -212,7 +212,7 @@ bool is_there(const std::filesystem::path& path) {
   return std::filesystem::exists(path, ignored);
 }
 
-void expect_free(const std::filesystem::path& path) {
+void require_free(const std::filesystem::path& path) {
   if (!is_there(path)) return;
   throw StudyError(path.string() +
                    ": exists (nothing is overwritten unasked): add --force to replace it, or "

@@ -65,6 +65,6 @@ std::filesystem::path part_of(std::filesystem::path path);
 bool is_there(const std::filesystem::path& path);
 
 /// Throws StudyError if a file of that name exists.
-void expect_free(const std::filesystem::path& path);
+void require_free(const std::filesystem::path& path);
 
 }  // namespace montecarta::engine

@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
@@ -91,5 +92,13 @@ struct ResultDescription {
 
 /// The description of the result file of a plan.
 ResultDescription describe(const StudyPlan& plan, const TextPairs& provenance);
+
+/// Why `b`, which describes the file `path`, is not of the same study and layout as `a`, worded
+/// "place: problem (why): remedy"; nullopt if it is. Their runs may differ.
+std::optional<std::string> difference(const ResultDescription& a, const ResultDescription& b,
+                                      const std::filesystem::path& path);
+
+/// Differences between two builds, worded for the user; empty if both round alike.
+std::vector<std::string> build_differences(const TextPairs& a, const TextPairs& b);
 
 }  // namespace montecarta::engine

@@ -2,6 +2,8 @@
 #include "engine/records/result_file.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/records/read_description.hpp"
+#include "engine/records/result_format.hpp"
 #include "engine/records/seal.hpp"
 #include "engine/records/sum_groups.hpp"
 #include "engine/text/visible_text.hpp"
@@ -79,7 +81,7 @@ std::vector<T> ResultFile::per_run(const std::string& dataset, Element element) 
 
 std::vector<RunStatus> ResultFile::status(const StoredCell& cell) const {
   auto statuses = per_run<RunStatus>("cells/" + cell.label + "/status", Element::u8);
-  expect_known(statuses, path().string() + ": cell '" + cell.label + "'");
+  require_known(statuses, path().string() + ": cell '" + cell.label + "'");
   return statuses;
 }
 

@@ -3,6 +3,8 @@
 
 #include "engine/errors.hpp"
 #include "engine/records/fingerprint.hpp"
+#include "engine/records/h5.hpp"
+#include "engine/records/result_format.hpp"
 
 #include <algorithm>
 #include <array>
@@ -95,7 +97,7 @@ ResultSlabs find_slabs(const std::filesystem::path& path, const ResultDescriptio
     }
   }
   slabs.wall_seconds = finder.find("timing/wall_seconds", sizeof(double), 1);
-  slabs.sittings = finder.find("provenance/sittings", format::kSittingsBytes, 1);
+  slabs.sessions = finder.find("provenance/sittings", format::kSessionsBytes, 1);
   for (const StoredCell& cell : description.cells) slabs.cells.push_back(finder.find(cell));
   for (std::size_t c = 0; description.sums && c < description.cells.size(); ++c) {
     const SummedRuns& sums = *description.sums;
@@ -112,7 +114,7 @@ std::vector<RunStatus> read_statuses(const PosixFile& file, const CellSlabs& cel
                                      std::size_t runs) {
   std::vector<RunStatus> statuses(runs);
   file.read_at(cell.status.offset, std::as_writable_bytes(std::span(statuses)));
-  expect_known(statuses, file.path().string());
+  require_known(statuses, file.path().string());
   return statuses;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The contents of a result file: its description, listed once for both the writer and the reader,
-// and the place of all runs (analysis/FORMAT.md).
-#include "engine/records/result_layout.hpp"
+#include "engine/records/result_schema.hpp"
+
+#include "engine/records/result_format.hpp"
 #include "engine/records/run_record.hpp"
 
 #include <algorithm>
@@ -505,7 +505,7 @@ void lay_out(const std::filesystem::path& path, const ResultDescription& result)
     if (result.sums) add_sums(file, result);
   });
   add_text(
-      h5::open_group(file, "provenance"), "sittings", "", format::kSittingsBytes,
+      h5::open_group(file, "provenance"), "sittings", "", format::kSessionsBytes,
       {"1", "one line for each resumption of the work: what was different from its beginning"});
   scales.clear();
   h5::close_file(std::move(file));

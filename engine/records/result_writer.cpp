@@ -33,6 +33,21 @@ ResultWriter::ResultWriter(const std::filesystem::path& path, OpenResult result,
   std::ranges::copy(result_.truth_stored, truth_stored_.begin());
 }
 
+ResultWriter ResultWriter::create(const std::filesystem::path& path, const StudyPlan& plan,
+                                  const TextPairs& provenance, Existing existing) {
+  return {path, create_result(path, plan, provenance, existing), plan};
+}
+
+ResultWriter ResultWriter::resume(const std::filesystem::path& path, const StudyPlan& plan,
+                                  const TextPairs& provenance) {
+  return {path, resume_result(path, plan, provenance), plan};
+}
+
+ResultWriter ResultWriter::attempt(const std::filesystem::path& path, const StudyPlan& plan,
+                                   const TextPairs& provenance) {
+  return {path, open_attempt(path, plan, provenance), plan};
+}
+
 RunStatus ResultWriter::status(std::size_t cell, std::size_t run_index) const {
   return status_[cell][run_index].load(std::memory_order_acquire);
 }

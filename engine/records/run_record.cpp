@@ -3,7 +3,7 @@
 
 #include "engine/errors.hpp"
 #include "engine/records/fingerprint.hpp"
-#include "engine/records/result_layout.hpp"
+#include "engine/records/result_format.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -24,7 +24,7 @@ Column column_of(const ColumnKind& kind, const Cell& cell) {
 
 /// Throws StudyError if a column that a filter declares has the name of something else in the group
 /// of its cell, or belongs to no group of columns.
-void expect_new(const OwnColumn& own, const std::vector<std::string>& declared, const Cell& cell) {
+void require_new(const OwnColumn& own, const std::vector<std::string>& declared, const Cell& cell) {
   const auto refuse = [&](const std::string& problem) {
     throw StudyError("filter " + cell.filter + ": its column " + own.name + " " + problem +
                      " in Capabilities::own_columns");
@@ -47,7 +47,7 @@ RecordLayout::RecordLayout(const Cell& cell, const ColumnSelection& selection,
       particles_(cell.particles),
       landmarks_(cell.landmarks) {
   for (const OwnColumn& own : cell.reports.own_columns) {
-    expect_new(own, own_columns_, cell);
+    require_new(own, own_columns_, cell);
     own_columns_.push_back(own.name);
   }
   if (selection.joint && cell.reports.joint)
@@ -170,7 +170,7 @@ void RunRecord::expect_element(const Column& column, std::size_t size) {
   expect(size_of(column.element) == size, "a column was asked for as another element type");
 }
 
-void expect_known(std::span<const RunStatus> statuses, const std::string& place) {
+void require_known(std::span<const RunStatus> statuses, const std::string& place) {
   if (std::ranges::all_of(statuses, [](RunStatus s) { return s <= RunStatus::spared; })) return;
   throw StudyError(place + ": a status is none of 0, 1, 2, 3 (the file is damaged): make it anew");
 }

@@ -79,7 +79,7 @@ inline bool is_stored(RunStatus status) {
 }
 
 /// Throws StudyError that begins with `place` if a number from a file is no status.
-void expect_known(std::span<const RunStatus> statuses, const std::string& place);
+void require_known(std::span<const RunStatus> statuses, const std::string& place);
 
 /// Width of failure_reason in the file. It is fixed, so that each run has its place.
 inline constexpr std::size_t kFailureReasonBytes = 128;

@@ -3,6 +3,8 @@
 
 #include "engine/errors.hpp"
 #include "engine/records/open_result.hpp"
+#include "engine/records/read_description.hpp"
+#include "engine/records/result_format.hpp"
 #include "engine/records/seal.hpp"
 
 #include <algorithm>
@@ -76,7 +78,7 @@ void copy_first_runs(const Shard& from, const ResultDescription& description, co
                      const ResultSlabs& slabs) {
   const PosixFile file(from.path, PosixFile::Mode::read);
   std::vector<std::byte> buffer;
-  for (const std::uint64_t run : description.runs) expect_whole(file, from, run, buffer);
+  for (const std::uint64_t run : description.runs) require_whole(file, from, run, buffer);
   copy_runs(file, from, {description.runs.front(), description.runs.size()}, to, slabs, 0);
 }
 
@@ -150,7 +152,7 @@ std::vector<SumShard> open_sum_shards(const std::vector<fs::path>& paths) {
 
 /// Throws StudyError unless the group `g` of `a` and `h` of `b`, which are of the same runs, are
 /// equal in all cells.
-void expect_equal_groups(const SumShard& a, std::size_t g, const SumShard& b, std::size_t h) {
+void require_equal_groups(const SumShard& a, std::size_t g, const SumShard& b, std::size_t h) {
   const PosixFile file_a(a.path, PosixFile::Mode::read), file_b(b.path, PosixFile::Mode::read);
   for (std::size_t c = 0; c < a.groups.size(); ++c) {
     const SumGroup &left = a.groups[c][g], &right = b.groups[c][h];
@@ -180,7 +182,7 @@ std::vector<Source> sources_of(const std::vector<SumShard>& shards, std::uint64_
       if (group.first_run < first_run || group.first_run >= last_run) continue;
       Source& source = sources[(group.first_run - first_run) / kRunsOfAGroup];
       if (source.shard != nullptr) {
-        expect_equal_groups(*source.shard, source.group, shard, g);
+        require_equal_groups(*source.shard, source.group, shard, g);
       } else {
         source = {&shard, g};
       }
@@ -189,8 +191,8 @@ std::vector<Source> sources_of(const std::vector<SumShard>& shards, std::uint64_
   return sources;
 }
 
-void expect_all_groups(const std::vector<Source>& sources, std::uint64_t first_run,
-                       std::uint64_t last_run, const fs::path& shard) {
+void require_all_groups(const std::vector<Source>& sources, std::uint64_t first_run,
+                        std::uint64_t last_run, const fs::path& shard) {
   std::vector<std::string> gaps;
   std::uint64_t missing = 0;
   for (std::size_t k = 0; k < sources.size(); ++k) {
@@ -241,7 +243,7 @@ MergeSummary merge_groups(const fs::path& out, const std::vector<fs::path>& path
   const std::vector<SumShard> shards = open_sum_shards(paths);
   MergeSummary summary{.runs = last_run - first_run, .notes = {}};
   const std::vector<Source> sources = sources_of(shards, first_run, last_run);
-  expect_all_groups(sources, first_run, last_run, paths.front());
+  require_all_groups(sources, first_run, last_run, paths.front());
   const SumShard& first = *sources.front().shard;
   summary.cells = first.description.cells.size();
   const ResultDescription description =

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/records/merge.hpp"
 #include "engine/records/posix_file.hpp"
 #include "engine/records/result_layout.hpp"
+#include "engine/records/shard.hpp"
 
 #include <cstdint>
 #include <filesystem>

@@ -3,6 +3,7 @@
 
 #include "engine/errors.hpp"
 
+#include <cstdlib>
 #include <unistd.h>
 
 namespace montecarta::engine {
@@ -22,6 +23,8 @@ extern "C" void note_signal(int signal) {
 }
 
 }  // namespace
+
+bool runs_under_scheduler() { return std::getenv("SLURM_JOB_ID") != nullptr; }
 
 Interruption::Interruption(From from) {
   expect(!installed.exchange(true), "two interruptions at once");

@@ -37,6 +37,10 @@ class StopRequest final : public StopFlag {
   std::atomic<StopReason> reason_{StopReason::complete};
 };
 
+/// Returns whether a batch scheduler started this process (SLURM_JOB_ID is set). Its signals are
+/// requests to stop, not interruptions.
+bool runs_under_scheduler();
+
 /// While the object exists, the first SIGINT or SIGTERM is only recorded, so that the program can
 /// close its file. The second one ends the program at once with exit code 128 + signal, except that
 /// a scheduler may repeat SIGTERM without effect. Only one object may exist, because signals belong

@@ -140,8 +140,6 @@ int exit_code(const RunOutcome& outcome, bool under_scheduler) {
   return EXIT_FAILURE;
 }
 
-bool runs_under_scheduler() { return std::getenv("SLURM_JOB_ID") != nullptr; }
-
 RunOutcome run_study(const StudyPlan& plan, const RunOptions& options) {
   const Stopwatch stopwatch;
   const Interruption interruption(runs_under_scheduler() ? Interruption::From::scheduler

@@ -34,9 +34,6 @@ struct RunOutcome {
 /// Exit code of the program: 0 done, 3 done with some failed runs, 85 stopped at a checkpoint (by
 /// the time budget or by SIGTERM from a scheduler), 130 or 143 interrupted.
 int exit_code(const RunOutcome& outcome, bool under_scheduler);
-/// Returns whether a batch scheduler started this process (SLURM_JOB_ID is set). Its signals are
-/// requests to stop, not interruptions.
-bool runs_under_scheduler();
 
 /// The settings of a run of a study. Results do not depend on them.
 struct RunOptions {

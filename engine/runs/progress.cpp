@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/runs/progress.hpp"
 
-#include "engine/runs/monte_carlo.hpp"
 #include "engine/text/wrapped_text.hpp"
 
 #include <algorithm>

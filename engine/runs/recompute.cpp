@@ -2,7 +2,6 @@
 #include "engine/runs/recompute.hpp"
 
 #include "engine/errors.hpp"
-#include "engine/records/open_result.hpp"
 #include "engine/records/recorder.hpp"
 #include "engine/runs/worker.hpp"
 

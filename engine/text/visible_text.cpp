@@ -25,12 +25,6 @@ std::size_t whole_character(std::string_view text) {
   return is_whole ? length : 0;
 }
 
-std::string hexadecimal(char c) {
-  constexpr std::string_view kHexadecimalDigits = "0123456789abcdef";
-  const auto byte = static_cast<unsigned char>(c);
-  return std::string("\\x") + kHexadecimalDigits[byte >> 4U] + kHexadecimalDigits[byte & 15U];
-}
-
 /// Returns whether it is an ASCII control character or one of two bytes (U+0080 to U+009F).
 bool is_control(std::string_view character) {
   const auto first = static_cast<unsigned char>(character.front());
@@ -39,6 +33,17 @@ bool is_control(std::string_view character) {
 }
 
 }  // namespace
+
+std::string hexadecimal(std::string_view bytes) {
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  std::string digits;
+  for (const char c : bytes) {
+    const auto byte = static_cast<unsigned char>(c);
+    digits += kDigits[byte >> 4U];
+    digits += kDigits[byte & 15U];
+  }
+  return digits;
+}
 
 std::string visible(std::string_view text, std::string_view kept) {
   std::string shown;
@@ -53,7 +58,7 @@ std::string visible(std::string_view text, std::string_view kept) {
     } else if (character == "\t") {
       shown += "\\t";
     } else {
-      for (const char c : character) shown += hexadecimal(c);
+      for (const char c : character) shown += "\\x" + hexadecimal({&c, 1});
     }
   }
   return shown;

@@ -10,6 +10,9 @@ namespace montecarta::engine {
 /// that `text` is one line, harmless to terminals and LaTeX. Characters in `kept` stay as they are.
 std::string visible(std::string_view text, std::string_view kept = "");
 
+/// The bytes in two lower-case hexadecimal digits each.
+std::string hexadecimal(std::string_view bytes);
+
 /// Number of bytes at the end of `text` that begin an incomplete character: 0 to 3.
 std::size_t unfinished_bytes(std::string_view text);
 

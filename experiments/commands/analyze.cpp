@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/render/tables/tables.hpp"
+#include "analysis/render/tables/analysis_file.hpp"
+#include "analysis/render/tables/files.hpp"
+#include "analysis/render/tables/terminal.hpp"
 #include "analysis/run/study_facts.hpp"
 #include "analysis/study/study_analysis.hpp"
 #include "engine/errors.hpp"
 #include "engine/text/wrapped_text.hpp"
 #include "experiments/commands/arguments.hpp"
 #include "experiments/commands/commands.hpp"
-#include "experiments/commands/output_guard.hpp"
+#include "experiments/commands/output_path.hpp"
 #include "experiments/commands/stored_result.hpp"
 
 #include <iostream>
@@ -20,7 +22,7 @@ void check_outputs(const Arguments& arguments, const ResultFile& file) {
   const auto directory = arguments.text("csv");
   if (output) {
     refuse_input_as_output(*output, arguments.operands());
-    expect_place_for_result(*output);
+    require_place_for_result(*output);
   }
   if (arguments.has("force")) return;
   if (output) refuse_existing("", {*output});
@@ -32,7 +34,7 @@ void check_outputs(const Arguments& arguments, const ResultFile& file) {
 
 /// Throws StudyError unless all files hold the same study: the tables of different studies below
 /// each other could be mistaken for one.
-void expect_one_study(const std::vector<std::string>& names) {
+void require_one_study(const std::vector<std::string>& names) {
   if (names.size() == 1) return;
   const std::string first = open_stored(names.front()).study_sha256();
   for (const std::string& name : names) {
@@ -58,7 +60,7 @@ void print(const StudyAnalysis& study, const std::string& name, const Arguments&
 }  // namespace
 
 int analyze_command(const Arguments& arguments) {
-  const double level = arguments.number("level", 1e-9, 1.0 - 1e-9).value_or(0.95);
+  const double level = arguments.number("level", 1e-9, 1.0 - 1e-9).value_or(kUsualLevel);
   const auto within = arguments.number("within", kLeastMargin, kMostMargin);
   const std::vector<std::string>& names = arguments.operands();
   const bool writes = arguments.has("output") || arguments.has("csv");
@@ -67,7 +69,7 @@ int analyze_command(const Arguments& arguments) {
         "analyze: -o and --csv take one file (shards are merged first): see montecarta "
         "merge --help");
   }
-  expect_one_study(names);
+  require_one_study(names);
   for (const std::string& name : names) {
     const ResultFile file = open_stored(name);
     check_outputs(arguments, file);

@@ -9,9 +9,9 @@
 namespace montecarta::experiments {
 
 int bounds_command(const Arguments& arguments) {
-  const Interval interval = nees_bounds(arguments.count("runs", 1, 1'000'000'000).value(),
-                                        arguments.count("dim", 1, 1000).value(),
-                                        arguments.number("level", 1e-9, 1.0 - 1e-9).value_or(0.95));
+  const Interval interval = nees_bounds(
+      arguments.count("runs", 1, 1'000'000'000).value(), arguments.count("dim", 1, 1000).value(),
+      arguments.number("level", 1e-9, 1.0 - 1e-9).value_or(kUsualLevel));
   char text[64];
   std::snprintf(text, sizeof text, "[%.6f, %.6f]\n", interval.lower, interval.upper);
   std::cout << text;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/commands/check.hpp"
 
+#include "analysis/render/tables/terminal.hpp"
 #include "analysis/study/stored_sums.hpp"
 #include "analysis/study/text_table.hpp"
 #include "engine/records/fingerprint.hpp"
@@ -11,6 +12,7 @@
 #include "engine/text/wrapped_text.hpp"
 #include "experiments/commands/arguments.hpp"
 #include "experiments/commands/commands.hpp"
+#include "experiments/study/enough_runs.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>

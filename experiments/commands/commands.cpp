@@ -4,7 +4,7 @@
 #include "engine/errors.hpp"
 #include "engine/records/provenance.hpp"
 #include "engine/text/wrapped_text.hpp"
-#include "experiments/commands/output_guard.hpp"
+#include "experiments/commands/visible_output.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>
@@ -109,28 +109,6 @@ int run_program(const std::vector<std::string>& words) {
   } catch (const std::exception& error) {
     return print_error(error.what(), kFailed);
   }
-}
-
-std::string help_text(const CommandSpec& spec) {
-  TextPairs options;
-  for (const OptionSpec& option : spec.options) {
-    const std::string letter = option.letter.empty() ? "    " : "-" + option.letter + ", ";
-    const std::string value = option.value.empty() ? "" : " " + option.value;
-    options.emplace_back(letter + "--" + option.name + value, option.meaning);
-  }
-  options.emplace_back("    --help", "print this text");
-  return wrapped("usage: montecarta " + spec.usage + (spec.options.empty() ? "" : " [options]") +
-                     "\n\n" + spec.summary + "\n\noptions:\n",
-                 output_width()) +
-         listing(options) + wrapped("\n" + spec.details, output_width());
-}
-
-std::string shell_quoted(const std::string& word) {
-  const char* plain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-./:=,+@%";
-  if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
-  std::string quoted = "'";
-  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
 }
 
 }  // namespace montecarta::experiments

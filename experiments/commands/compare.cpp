@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/render/tables/tables.hpp"
+#include "analysis/render/tables/terminal.hpp"
 #include "analysis/run/study_facts.hpp"
 #include "analysis/study/study_comparison.hpp"
 #include "analysis/study/text_table.hpp"
@@ -8,7 +8,7 @@
 #include "engine/text/wrapped_text.hpp"
 #include "experiments/commands/arguments.hpp"
 #include "experiments/commands/commands.hpp"
-#include "experiments/commands/output_guard.hpp"
+#include "experiments/commands/output_path.hpp"
 #include "experiments/commands/stored_result.hpp"
 #include "experiments/text/words.hpp"
 
@@ -105,7 +105,7 @@ void print(const StudyAnalysis& study, const StudyComparison& comparison, bool w
 }  // namespace
 
 int compare_command(const Arguments& arguments) {
-  const double level = arguments.number("level", 1e-9, 1.0 - 1e-9).value_or(0.95);
+  const double level = arguments.number("level", 1e-9, 1.0 - 1e-9).value_or(kUsualLevel);
   const ResultFile file = open_stored(arguments.operands().front());
   const std::string baseline = baseline_of(arguments, file);
   const std::vector<const Score*> scores = scores_of(arguments, file);

@@ -5,7 +5,7 @@
 #include "experiments/commands/commands.hpp"
 #include "experiments/recordings/log_csv.hpp"
 #include "experiments/recordings/recorded_drive.hpp"
-#include "experiments/study/make_drives.hpp"
+#include "experiments/study/vehicle_and_sensor.hpp"
 
 #include <algorithm>
 #include <iostream>

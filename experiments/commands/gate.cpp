@@ -2,6 +2,7 @@
 #include "analysis/render/page/html.hpp"
 #include "analysis/run/study_facts.hpp"
 #include "analysis/study/study_analysis.hpp"
+#include "analysis/verdict/sentence.hpp"
 #include "analysis/verdict/verdict.hpp"
 #include "engine/errors.hpp"
 #include "engine/text/wrapped_text.hpp"
@@ -16,8 +17,6 @@
 namespace montecarta::experiments {
 namespace {
 
-constexpr double kGateLevel = 0.95;
-
 const StoredCell& cell_to_judge(const Arguments& arguments, const ResultFile& file) {
   const auto label = arguments.text("cell");
   if (!label && file.cells().size() == 1) return file.cells().front();
@@ -28,7 +27,7 @@ const StoredCell& cell_to_judge(const Arguments& arguments, const ResultFile& fi
 }
 
 /// Throws StudyError if runs are missing: those that ended first are not a fair sample.
-void expect_all_runs(const ResultFile& file, const StoredCell& cell) {
+void require_all_runs(const ResultFile& file, const StoredCell& cell) {
   const RunCounts counts = count_status(file, cell);
   if (counts.missing == 0) return;
   throw StudyError(file.path().string() + ": " + std::to_string(counts.missing) + " runs of cell " +
@@ -118,9 +117,9 @@ int gate_command(const Arguments& arguments) {
                      ": a recorded drive without truth (its errors are unknown): gate a simulated "
                      "study, or see the scores against references by montecarta analyze");
   }
-  expect_all_runs(file, stored);
+  require_all_runs(file, stored);
   const CellAnalysis cell =
-      analyze_cell(file, stored, kGateLevel, file.runs().size(), parallel_of(arguments), within);
+      analyze_cell(file, stored, kUsualLevel, file.runs().size(), parallel_of(arguments), within);
   const GateAnswer answer =
       at_place(place + ": cell " + stored.label, [&] { return gate(cell.verdict, allowed); });
   if (arguments.has("json")) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/render/tables/tables.hpp"
+#include "analysis/render/tables/terminal.hpp"
 #include "analysis/run/study_facts.hpp"
 #include "analysis/study/study_analysis.hpp"
 #include "analysis/verdict/verdict.hpp"
@@ -8,7 +8,7 @@
 #include "engine/text/wrapped_text.hpp"
 #include "experiments/commands/arguments.hpp"
 #include "experiments/commands/commands.hpp"
-#include "experiments/commands/output_guard.hpp"
+#include "experiments/commands/output_path.hpp"
 #include "experiments/commands/stored_result.hpp"
 #include "experiments/judging/judged_study.hpp"
 #include "experiments/text/words.hpp"
@@ -33,7 +33,7 @@ std::optional<ErrorConvention> convention_of(const Arguments& arguments) {
 JudgingOptions judging_options(const Arguments& arguments) {
   JudgingOptions options;
   options.output = arguments.text("output").value();
-  expect_place_for_result(options.output);
+  require_place_for_result(options.output);
   options.convention = convention_of(arguments);
   options.match.tolerance =
       arguments.number("tolerance", 0.0, 1e6).value_or(options.match.tolerance);
@@ -52,7 +52,8 @@ int judge_command(const Arguments& arguments) {
       pair_files(arguments.operands(), arguments.texts("truth"), arguments.text("cell"));
   const std::vector<std::string> notes = judge_files(files, options);
   const ResultFile file(options.output);
-  print_summary(std::cout, analyze(file, 0.95, parallel_of(arguments)), engine::output_width());
+  print_summary(std::cout, analyze(file, kUsualLevel, parallel_of(arguments)),
+                engine::output_width());
   print_where_to_look(options.output.string(), "");
   for (const std::string& note : notes) std::cerr << "montecarta: note: " << note << "\n";
   std::cerr << "montecarta: " << files.runs.size() << " runs of " << files.cells.size()

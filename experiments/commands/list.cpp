@@ -19,7 +19,7 @@ namespace montecarta::experiments {
 namespace {
 
 /// One entry of a list, with all that is printed if a user names it.
-struct Entry {
+struct ListEntry {
   std::string name;
   std::string summary;    ///< stands beside the name in the list
   TextPairs facts = {};   ///< lines below the summary of one entry
@@ -47,10 +47,10 @@ TextPairs options_text(std::span<const Parameter> options) {
   return items;
 }
 
-std::vector<Entry> filters() {
-  std::vector<Entry> entries;
+std::vector<ListEntry> filters() {
+  std::vector<ListEntry> entries;
   for (const FilterKind& filter : known_filters()) {
-    Entry& entry = entries.emplace_back(Entry{filter.name, filter.long_name});
+    ListEntry& entry = entries.emplace_back(ListEntry{filter.name, filter.long_name});
     entry.facts = {{"source", filter.source},
                    {"sensors", joined(filter.sensors.empty() ? sensor_names() : filter.sensors)}};
     if (!filter.options.empty()) entry.tables.emplace_back("options", options_text(filter.options));
@@ -92,8 +92,8 @@ const std::map<std::string, std::string> kSectionTitles = {
     {"association", "association of detections with landmarks"},
     {"record", "columns to store"}};
 
-std::vector<Entry> settings() {
-  std::vector<Entry> entries;
+std::vector<ListEntry> settings() {
+  std::vector<ListEntry> entries;
   for (const Setting& setting : study_settings()) {
     const std::string first = engine::first_sentence(setting.meaning);
     const std::size_t rest = std::min(first.size() + 2, setting.meaning.size());
@@ -109,15 +109,15 @@ std::vector<Entry> settings() {
 
 /// Entries for the shipped files in a folder. entry_of(name, path) makes one.
 template <class EntryOf>
-std::vector<Entry> shipped_entries(const std::string& folder, const std::string& ending,
-                                   const EntryOf& entry_of) {
-  std::vector<Entry> entries;
+std::vector<ListEntry> shipped_entries(const std::string& folder, const std::string& ending,
+                                       const EntryOf& entry_of) {
+  std::vector<ListEntry> entries;
   for (const std::string& name : shipped_names(folder, ending))
     entries.push_back(entry_of(name, shipped_file(folder, name + ending).value().string()));
   return entries;
 }
 
-Entry entry_of_world(const std::string& name, const std::string& path) {
+ListEntry entry_of_world(const std::string& name, const std::string& path) {
   const World world = find_world(name);
   return {name,
           std::to_string(world.landmarks.size()) + " landmarks, " +
@@ -125,7 +125,7 @@ Entry entry_of_world(const std::string& name, const std::string& path) {
           {{"file", path}, {"in a study", "scenario.world = " + name}}};
 }
 
-Entry entry_of_study(const std::string& name, const std::string& path) {
+ListEntry entry_of_study(const std::string& name, const std::string& path) {
   const IniText ini = read_ini(text_file(path), path);
   const auto title = std::ranges::find_if(
       ini.entries, [](const IniEntry& e) { return e.section == "study" && e.key == "title"; });
@@ -136,8 +136,8 @@ Entry entry_of_study(const std::string& name, const std::string& path) {
            {"run it", "montecarta run " + name}}};
 }
 
-std::vector<Entry> metrics() {
-  std::vector<Entry> entries;
+std::vector<ListEntry> metrics() {
+  std::vector<ListEntry> entries;
   for (const Score& score : all_scores()) {
     const std::string units(score.units);
     entries.push_back({score.name,
@@ -171,8 +171,8 @@ std::vector<ListedColumn> listed_columns() {
   return columns;
 }
 
-std::vector<Entry> columns() {
-  std::vector<Entry> entries;
+std::vector<ListEntry> columns() {
+  std::vector<ListEntry> entries;
   for (const ColumnGroup& group : column_groups()) {
     if (group.name == std::string("sums"))
       entries.push_back({.name = group.name,
@@ -194,7 +194,7 @@ std::vector<Entry> columns() {
 /// One kind of entries.
 struct Listed {
   std::string name;
-  std::vector<Entry> (*entries)();
+  std::vector<ListEntry> (*entries)();
   std::string example;      ///< an entry about which there is more to read
   std::string remark = {};  ///< stands above the list
 };
@@ -202,7 +202,7 @@ struct Listed {
 /// Prints all entries below their headings.
 void list_all(const Listed& listed) {
   if (!listed.remark.empty()) std::cout << wrapped(listed.remark + "\n\n", output_width());
-  const std::vector<Entry> entries = listed.entries();
+  const std::vector<ListEntry> entries = listed.entries();
   for (auto entry = entries.begin(); entry != entries.end();) {
     const std::string heading = entry->heading;
     TextPairs items;
@@ -217,7 +217,7 @@ void list_all(const Listed& listed) {
       output_width());
 }
 
-void describe(const Entry& entry) {
+void describe(const ListEntry& entry) {
   std::cout << wrapped(entry.name + ": " + entry.summary + "\n" + entry.more, output_width())
             << "\n"
             << listing(entry.facts);
@@ -230,7 +230,7 @@ void describe(const Entry& entry) {
 void describe_all(const Listed& listed, const std::string& name) {
   std::vector<std::string> known;
   bool is_first = true;
-  for (const Entry& entry : listed.entries()) {
+  for (const ListEntry& entry : listed.entries()) {
     known.push_back(entry.name);
     if (!entry.short_name.empty()) known.push_back(entry.short_name);
     if (name != entry.name && name != entry.short_name) continue;

@@ -3,7 +3,7 @@
 
 #include "engine/records/posix_file.hpp"
 #include "experiments/commands/commands.hpp"
-#include "experiments/commands/output_guard.hpp"
+#include "experiments/commands/output_path.hpp"
 
 #include <iostream>
 
@@ -13,7 +13,7 @@ int merge_command(const Arguments& arguments) {
   const std::vector<std::string>& names = arguments.operands();
   const std::vector<std::filesystem::path> shards(names.begin() + 1, names.end());
   const Existing existing = arguments.has("force") ? Existing::replace : Existing::refuse;
-  expect_place_for_result(names.front());
+  require_place_for_result(names.front());
   const MergeSummary summary = merge_results(names.front(), shards, existing);
   for (const std::string& note : summary.notes) std::cerr << "montecarta: " << note << "\n";
   std::cerr << "montecarta: " << summary.runs << " runs of " << summary.cells << " cells out of "

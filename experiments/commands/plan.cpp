@@ -60,7 +60,7 @@ int plan_command(const Arguments& arguments) {
     return arguments.number(option, kLeastProbability, 1.0 - kLeastProbability).value_or(usual);
   };
   NeesTest test{.dimension = arguments.count("dim", 1, 1000).value(),
-                .level = probability("level", 0.95)};
+                .level = probability("level", kUsualLevel)};
   const Question question{
       .ratio = ratio,
       .within = arguments.number("within", kLeastMargin, kMostMargin).value_or(kUsualMargin),

@@ -6,12 +6,11 @@
 #include "engine/text/wrapped_text.hpp"
 #include "experiments/commands/arguments.hpp"
 #include "experiments/commands/commands.hpp"
-#include "experiments/commands/output_guard.hpp"
+#include "experiments/commands/output_path.hpp"
 #include "experiments/commands/stored_result.hpp"
 #include "experiments/recordings/recorded_drive.hpp"
-#include "experiments/study/make_drives.hpp"
 #include "experiments/study/make_plan.hpp"
-#include "experiments/study/settings.hpp"
+#include "experiments/study/setting_table.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>
@@ -86,7 +85,7 @@ int replay_command(const Arguments& arguments) {
   const ResultFile file = open_stored(arguments.operands().front());
   const std::uint64_t run = arguments.count("run", 0, file.study_runs() - 1).value();
   refuse_input_as_output(output, arguments.operands());
-  expect_place_for_result(output);
+  require_place_for_result(output);
   const Study study = study_in(file, arguments);
   const CellSpec& chosen = item_called(label, study.cells, &CellSpec::label,
                                        "--cell " + label + ": no cell of this study");

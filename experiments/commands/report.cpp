@@ -16,7 +16,7 @@ namespace montecarta::experiments {
 namespace {
 
 /// Tries gnuplot before the work: a report takes minutes and needs gnuplot only at the end.
-void expect_gnuplot() {
+void require_gnuplot() {
   namespace fs = std::filesystem;
   std::string folder = (fs::temp_directory_path() / "montecarta_XXXXXX").string();
   if (::mkdtemp(folder.data()) == nullptr) return;  // drawing the figures will report the error
@@ -37,7 +37,7 @@ int report_command(const Arguments& arguments) {
   options.run = arguments.count("run", 0, UINT32_MAX);
   options.existing = arguments.has("force") ? ExistingReport::replace : ExistingReport::refuse;
   options.parallel = &parallel;
-  expect_gnuplot();
+  require_gnuplot();
   write_report(open_stored(arguments.operands().front()), directory, options);
   std::cout << (directory / "index.html").string() << "\n";
   return kDone;

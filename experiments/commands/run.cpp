@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/render/report.hpp"
-#include "analysis/render/tables/tables.hpp"
+#include "analysis/render/tables/terminal.hpp"
 #include "analysis/study/study_analysis.hpp"
 #include "engine/errors.hpp"
 #include "engine/records/posix_file.hpp"
@@ -11,7 +11,7 @@
 #include "engine/threads/thread_budget.hpp"
 #include "experiments/commands/arguments.hpp"
 #include "experiments/commands/commands.hpp"
-#include "experiments/commands/output_guard.hpp"
+#include "experiments/commands/output_path.hpp"
 #include "experiments/commands/stored_result.hpp"
 #include "experiments/commands/summed_study.hpp"
 
@@ -74,7 +74,7 @@ RunOptions options_of(const Study& study, const Arguments& arguments) {
   }
   RunOptions options;
   options.output = output_of(study, arguments);
-  expect_place_for_result(options.output);
+  require_place_for_result(options.output);
   options.parallel = parallel_of(arguments);
   options.resume = arguments.has("resume");
   options.force = arguments.has("force");
@@ -86,8 +86,8 @@ RunOptions options_of(const Study& study, const Arguments& arguments) {
   return options;
 }
 
-void tell_how_to_resume(const RunOutcome& outcome, const std::filesystem::path& work,
-                        const Arguments& arguments) {
+void print_how_to_resume(const RunOutcome& outcome, const std::filesystem::path& work,
+                         const Arguments& arguments) {
   std::cerr << "montecarta: stopped; " << outcome.counts.missing
             << " runs are missing, the finished ones are in " << work.string()
             << ". Continue with:\n  " << resuming_command(arguments) << "\n";
@@ -110,7 +110,7 @@ std::string draw_report(const ResultFile& file, const std::filesystem::path& fol
   }
 }
 
-void tell_results(const RunOptions& options, const std::optional<std::filesystem::path>& report) {
+void print_results(const RunOptions& options, const std::optional<std::filesystem::path>& report) {
   if (std::filesystem::file_size(options.output) > kLargestVerdict) {
     const std::string name = shell_quoted(options.output.string());
     std::cout << "The verdict: montecarta analyze " << name << "\n";
@@ -120,7 +120,7 @@ void tell_results(const RunOptions& options, const std::optional<std::filesystem
     return;
   }
   const ResultFile file(options.output);
-  print_summary(std::cout, analyze(file, 0.95, options.parallel), engine::output_width());
+  print_summary(std::cout, analyze(file, kUsualLevel, options.parallel), engine::output_width());
   std::cout << std::flush;
   print_where_to_look(options.output.string(), report ? draw_report(file, *report, options) : "");
 }
@@ -136,13 +136,13 @@ int run_command(const Arguments& arguments) {
   const RunOutcome outcome =
       plan.columns.sums ? run_summed_study(plan, options) : run_study(plan, options);
   if (outcome.counts.missing > 0) {
-    tell_how_to_resume(outcome,
-                       plan.columns.sums ? groups_of(options.output) : part_of(options.output),
-                       arguments);
+    print_how_to_resume(outcome,
+                        plan.columns.sums ? groups_of(options.output) : part_of(options.output),
+                        arguments);
     return exit_code(outcome, runs_under_scheduler());
   }
   if (!options.quiet) {
-    tell_results(options, report);
+    print_results(options, report);
     std::cerr << "montecarta: " << outcome.runs_here << " runs in "
               << duration_text(outcome.seconds) << ", stored in " << options.output.string()
               << "\n";

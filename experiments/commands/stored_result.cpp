@@ -3,9 +3,9 @@
 
 #include "engine/errors.hpp"
 #include "engine/records/fingerprint.hpp"
-#include "engine/records/open_result.hpp"
 #include "engine/records/posix_file.hpp"
 #include "engine/records/provenance.hpp"
+#include "engine/records/result_description.hpp"
 #include "engine/records/sum_groups.hpp"
 #include "experiments/judging/judged_study.hpp"
 #include "experiments/recordings/recorded_drive.hpp"

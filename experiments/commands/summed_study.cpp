@@ -3,8 +3,8 @@
 
 #include "analysis/study/stored_sums.hpp"
 #include "engine/errors.hpp"
-#include "engine/records/open_result.hpp"
 #include "engine/records/posix_file.hpp"
+#include "engine/records/read_description.hpp"
 #include "engine/records/result_file.hpp"
 #include "experiments/commands/stored_result.hpp"
 
@@ -116,7 +116,7 @@ void remove_work(const fs::path& folder) {
 }
 
 /// Throws StudyError if a finished result is not that of this plan.
-void expect_result_of(const StudyPlan& plan, const RunOptions& options) {
+void require_result_of(const StudyPlan& plan, const RunOptions& options) {
   const ResultDescription stored = read_description(options.output);
   const auto differs = difference(describe(plan, options.provenance), stored, options.output);
   if (differs) throw StudyError(*differs);
@@ -131,7 +131,7 @@ std::optional<PosixFile> open_work(const fs::path& folder, const StudyPlan& plan
                                    const RunOptions& options) {
   const bool goes_on = options.resume || options.attempt, has_work = is_there(folder);
   if (!has_work && goes_on && is_there(options.output)) {
-    expect_result_of(plan, options);
+    require_result_of(plan, options);
     return std::nullopt;
   }
   if (has_work && !goes_on && !options.force) {
@@ -139,7 +139,7 @@ std::optional<PosixFile> open_work(const fs::path& folder, const StudyPlan& plan
                      ": holds unfinished work: continue it with --resume, or start afresh with "
                      "--force");
   }
-  if (!options.force && !is_there(replaces_in(folder))) expect_free(options.output);
+  if (!options.force && !is_there(replaces_in(folder))) require_free(options.output);
   fs::create_directory(folder);
   PosixFile lock(lock_in(folder), PosixFile::Mode::create);
   lock.lock();

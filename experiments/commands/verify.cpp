@@ -33,7 +33,7 @@ std::vector<StoredRun> runs_stored(const ResultFile& file) {
 
 /// Checks the fingerprints of all stored runs outside the sample, prints the runs that do not
 /// match, and returns their number.
-std::size_t tell_damaged(const ResultFile& file, const std::vector<StoredRun>& sample) {
+std::size_t print_damaged(const ResultFile& file, const std::vector<StoredRun>& sample) {
   const auto is_in_sample = [&](std::size_t c, std::size_t i) {
     return std::ranges::any_of(
         sample, [&](const StoredRun& run) { return run.cell == c && run.run_index == i; });
@@ -124,7 +124,7 @@ int verify_command(const Arguments& arguments) {
   for (const auto& difference : differences) {
     if (difference) std::cout << wrapped(*difference, output_width(), 2);
   }
-  const std::size_t damaged = tell_damaged(file, chosen);
+  const std::size_t damaged = print_damaged(file, chosen);
   std::cout << wrapped(std::to_string(equal) + " of " + std::to_string(chosen.size()) +
                            " runs are reproduced byte for byte, out of " +
                            std::to_string(stored.size()) + " stored (sample " +

@@ -11,7 +11,7 @@ namespace montecarta::experiments {
 ExternalFilter::ExternalFilter(FilterSetup setup, ExternalCommand command)
     : setup_(std::move(setup)),
       command_(std::move(command)),
-      session_(std::make_unique<Session>()) {}
+      session_(std::make_unique<ProgramSession>()) {}
 
 /// The program receives the start only with the first step, which has the run's number and seed.
 void ExternalFilter::start(const Pose& start) {
@@ -33,7 +33,7 @@ void ExternalFilter::predict(const StepContext& context, const Control& control,
 
 void ExternalFilter::update(const StepContext& context, Scan scan) {
   begin(context);
-  use_process([&](Session& session) {
+  use_process([&](ProgramSession& session) {
     const std::uint64_t id = session.next_id++;
     const std::string_view line =
         ask(scan_message(id, session.controls, scan, setup_.association.kind,
@@ -47,7 +47,7 @@ void ExternalFilter::update(const StepContext& context, Scan scan) {
 
 PoseEstimate ExternalFilter::estimate() const {
   if (session_->controls.empty()) return {session_->pose, std::nullopt};
-  use_process([&](Session& session) {
+  use_process([&](ProgramSession& session) {
     const std::uint64_t id = session.next_id++;
     session.pose = read_estimate(ask(predict_message(id, session.controls)), id).pose;
     session.controls.clear();
@@ -56,7 +56,7 @@ PoseEstimate ExternalFilter::estimate() const {
 }
 
 void ExternalFilter::map(std::span<std::optional<LandmarkEstimate>> landmarks) const {
-  use_process([&](Session& session) {
+  use_process([&](ProgramSession& session) {
     const std::uint64_t id = session.next_id++;
     read_map(ask(map_message(id)), id, setup_.association.kind, landmarks);
   });
@@ -73,18 +73,18 @@ void ExternalFilter::begin(const StepContext& context) {
   if (!command_.keeps_process) session_->process.reset();
   if (session_->process != nullptr) {
     try {
-      tell_start(start);
+      send_start(start);
       return;
     } catch (const ProgramError&) {
       if (stop_ != nullptr && stop_->is_set()) throw;
     }
   }
-  tell_start(start);
+  send_start(start);
 }
 
-void ExternalFilter::tell_start(const RunStart& start) const {
+void ExternalFilter::send_start(const RunStart& start) const {
   try {
-    use_process([&](Session& session) {
+    use_process([&](ProgramSession& session) {
       if (session.process == nullptr)
         session.process = std::make_unique<ChildProcess>(command_.words);
       session.next_id = 1;

@@ -54,7 +54,7 @@ class ExternalFilter final : public SlamFilter {
  private:
   /// The process and the messages of this run. A request changes the session, but not the estimate,
   /// so it may be made by a const function.
-  struct Session {
+  struct ProgramSession {
     std::unique_ptr<ChildProcess> process;
     std::uint64_t next_id = 0;         ///< of the next message in this run
     std::vector<ControlRow> controls;  ///< controls that were not yet sent to the program
@@ -62,7 +62,7 @@ class ExternalFilter final : public SlamFilter {
   };
 
   void begin(const StepContext& context);
-  void tell_start(const RunStart& start) const;
+  void send_start(const RunStart& start) const;
   std::string_view ask(const std::string& message) const;
   /// Calls `use`, and ends the process if that throws.
   template <class Use>
@@ -74,7 +74,7 @@ class ExternalFilter final : public SlamFilter {
   bool is_begun_ = false;
   const StopFlag* stop_ = nullptr;
   ScanReport report_;
-  std::unique_ptr<Session> session_;
+  std::unique_ptr<ProgramSession> session_;
 };
 
 /// Permission to start the programs that cells name. The user gives it when running a study; a

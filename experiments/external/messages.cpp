@@ -54,8 +54,8 @@ void add_sensor(const Belief& belief, Json& settings) {
 Json settings_of(const FilterSetup& setup) {
   const Vehicle& vehicle = setup.belief.vehicle;
   Json settings = {{"vehicle", name_of(vehicle)}};
-  tell_vehicle(vehicle,
-               [&](const std::string& name, const auto& value) { settings[name] = value; });
+  for_each_setting(vehicle,
+                   [&](const std::string& name, const auto& value) { settings[name] = value; });
   add_controls(vehicle, setup.belief.control, settings);
   add_sensor(setup.belief, settings);
   settings["association"] = setup.association.kind == Association::known ? "known" : "nearest";

@@ -90,7 +90,7 @@ std::string CsvRows::place() const { return path_ + ":" + std::to_string(line_);
 
 void CsvRows::refuse(const std::string& fault) const { throw StudyError(place() + ": " + fault); }
 
-void CsvRows::expect_some() const {
+void CsvRows::require_some() const {
   if (has_rows_) return;
   throw StudyError(path_ + ": no rows behind the header (a file has at least one): write the rows");
 }

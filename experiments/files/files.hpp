@@ -65,7 +65,7 @@ class CsvRows {
   /// remedy".
   [[noreturn]] void refuse(const std::string& fault) const;
   /// To be called at the end. Throws StudyError if the file has no rows behind the header.
-  void expect_some() const;
+  void require_some() const;
 
  private:
   /// Takes the next row that is not empty; nullopt at the end.

@@ -21,8 +21,8 @@ namespace fs = std::filesystem;
 
 /// Checks that all files have the same kind of state and the same times, because averages over runs
 /// are taken at each time. A run may end before the others.
-void expect_alike(const StateRows& rows, const fs::path& path, const StateRows& first,
-                  const fs::path& first_path, double tolerance) {
+void require_alike(const StateRows& rows, const fs::path& path, const StateRows& first,
+                   const fs::path& first_path, double tolerance) {
   if (rows.shape != first.shape) {
     throw StudyError(path.string() + ": another state than in " + first_path.string() +
                      " (one study judges one state): judge them apart");
@@ -173,7 +173,7 @@ std::vector<std::string> write_runs(const JudgedFiles& files, const JudgingOptio
       const fs::path& path = files.cells[c].of_run[run];
       const StateRows rows = read_with_innovations(path, options.match.tolerance);
       unwrapped.add(rows);
-      expect_alike(rows, path, longest.rows, longest.path, options.match.tolerance);
+      require_alike(rows, path, longest.rows, longest.path, options.match.tolerance);
       std::vector<Eigen::VectorXd> truths;
       for (const double time : longest.rows.time)
         truths.push_back(truth_at(truth, time, options.match, path, files.truth[run]));

@@ -151,8 +151,8 @@ std::map<std::string, FilesByRun> cells_of(const std::vector<FoundFile>& files,
   return cells;
 }
 
-void expect_same_runs(const FilesByRun& wanted, const FilesByRun& given, const std::string& of,
-                      const std::string& remedy) {
+void require_same_runs(const FilesByRun& wanted, const FilesByRun& given, const std::string& of,
+                       const std::string& remedy) {
   for (const auto& [run, file] : wanted) {
     if (given.contains(run)) continue;
     throw StudyError(file.string() + ": run " + std::to_string(run) + " has no " + of + " (" +
@@ -161,7 +161,7 @@ void expect_same_runs(const FilesByRun& wanted, const FilesByRun& given, const s
   }
 }
 
-void expect_no_gap(const FilesByRun& runs) {
+void require_no_gap(const FilesByRun& runs) {
   const std::uint64_t first = runs.begin()->first;
   std::uint64_t next = first;
   for (const auto& [run, file] : runs) {
@@ -206,23 +206,23 @@ JudgedFiles pair_files(const std::vector<std::string>& estimates,
   if (is_unnumbered) files.front().run = 0;
   const std::map<std::string, FilesByRun> cells = cells_of(files, cell);
   const FilesByRun& first = cells.begin()->second;
-  expect_no_gap(first);
+  require_no_gap(first);
   const FilesByRun truth_of = truths_of(first, truths, is_unnumbered);
-  expect_same_runs(first, truth_of, "truth", "name its truth after --truth too");
-  expect_same_runs(truth_of, first, "estimate",
-                   "give a failed run, which is a result, the file that it wrote, the header at "
-                   "least; for fewer runs name only their truths");
+  require_same_runs(first, truth_of, "truth", "name its truth after --truth too");
+  require_same_runs(truth_of, first, "estimate",
+                    "give a failed run, which is a result, the file that it wrote, the header at "
+                    "least; for fewer runs name only their truths");
   JudgedFiles judged;
   for (const auto& [run, file] : truth_of) {
     judged.runs.push_back(run);
     judged.truth.push_back(file);
   }
   for (const auto& [label, of_run] : cells) {
-    expect_same_runs(first, of_run, "estimate in cell " + label,
-                     "estimators are paired by run: "
-                     "judge the same runs of all");
-    expect_same_runs(of_run, first, "estimate in cell " + cells.begin()->first,
-                     "estimators are paired by run: judge the same runs of all");
+    require_same_runs(first, of_run, "estimate in cell " + label,
+                      "estimators are paired by run: "
+                      "judge the same runs of all");
+    require_same_runs(of_run, first, "estimate in cell " + cells.begin()->first,
+                      "estimators are paired by run: judge the same runs of all");
     EstimatorFiles& one = judged.cells.emplace_back(EstimatorFiles{label, {}});
     for (const auto& [run, file] : of_run) one.of_run.push_back(file);
   }

@@ -391,7 +391,7 @@ StateRows read_truth(const std::filesystem::path& path, const StateShape& shape)
     rows.time.push_back(file.time());
     rows.state.push_back(state_in(file, fields, shape));
   }
-  file.expect_some();
+  file.require_some();
   return rows;
 }
 

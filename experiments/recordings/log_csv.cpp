@@ -127,7 +127,7 @@ void read_odometry(const fs::path& path, DriveLog& log) {
     for (std::size_t c = 0; c < log.controls.size(); ++c)
       odometry.control[c] = quantity_in(rows, c + 1, log.controls[c]);
   }
-  rows.expect_some();
+  rows.require_some();
 }
 
 /// The identity in a field; nullopt if the field is empty.
@@ -208,7 +208,7 @@ void read_scans(const fs::path& path, DriveLog& log) {
     check_identity(rows, detection.identity, log.landmarks.size(), seen);
     scans.back().detections.push_back(detection);
   }
-  rows.expect_some();
+  rows.require_some();
 }
 
 /// Reads the landmarks. If there is a column of identities, every identity from 0 on must occur
@@ -326,9 +326,9 @@ DriveLog read_log_csv(const fs::path& folder) {
 namespace {
 
 /// The text of a file, built row by row.
-class Table {
+class LogTable {
  public:
-  explicit Table(const std::string& header) : text_(header + "\n") {}
+  explicit LogTable(const std::string& header) : text_(header + "\n") {}
 
   void add(std::initializer_list<double> numbers, const std::string& rest = "") {
     add(std::span(numbers.begin(), numbers.size()), rest);
@@ -347,8 +347,8 @@ class Table {
 };
 
 /// Throws StudyError for numbers that read_log_csv() would refuse.
-void expect_readable(std::span<const double> values, std::span<const Quantity> quantities,
-                     const fs::path& file) {
+void require_readable(std::span<const double> values, std::span<const Quantity> quantities,
+                      const fs::path& file) {
   for (std::size_t i = 0; i < quantities.size(); ++i) {
     const std::string fault = fault_of(values[i], quantities[i]);
     if (fault.empty()) continue;
@@ -357,12 +357,12 @@ void expect_readable(std::span<const double> values, std::span<const Quantity> q
   }
 }
 
-Table odometry_table(const DriveLog& log, const fs::path& file) {
-  Table table(header_of(log.controls));
+LogTable odometry_table(const DriveLog& log, const fs::path& file) {
+  LogTable table(header_of(log.controls));
   for (const auto& [time, control] : log.odometry) {
     std::array<double, 1 + Control::kMost> row{time};
     std::ranges::copy(control.values, row.begin() + 1);
-    expect_readable(control.values, log.controls, file);
+    require_readable(control.values, log.controls, file);
     table.add(std::span(row).first(1 + log.controls.size()));
   }
   return table;
@@ -378,16 +378,16 @@ std::string identity_field(const Detection& detection) {
   return detection.identity < 0 ? "," : "," + std::to_string(detection.identity);
 }
 
-Table detection_table(const DriveLog& log, const fs::path& file) {
+LogTable detection_table(const DriveLog& log, const fs::path& file) {
   const bool identified = is_identified(log);
   const std::size_t n = log.components.size();
-  Table table(detection_headers(log.components)[identified ? 1 : 0]);
+  LogTable table(detection_headers(log.components)[identified ? 1 : 0]);
   for (const auto& [time, detections] : log.scans) {
     if (detections.empty()) table.add({time}, std::string(identified ? n + 1 : n, ','));
     for (const Detection& detection : detections) {
       std::array<double, 1 + Detection::kMost> row{time};
       std::ranges::copy(detection.values, row.begin() + 1);
-      expect_readable(detection.values, log.components, file);
+      require_readable(detection.values, log.components, file);
       table.add(std::span(row).first(1 + n), identified ? identity_field(detection) : "");
     }
   }
@@ -410,11 +410,11 @@ void write_log_csv(const DriveLog& log, const fs::path& folder) {
 void write_log_csv(const DriveLog& log, const fs::path& folder, const fs::path& truth_folder) {
   const fs::path odometry_file = folder / "odometry.csv",
                  detection_file = folder / "detections.csv";
-  const Table odometry = odometry_table(log, odometry_file);
-  const Table detections = detection_table(log, detection_file);
+  const LogTable odometry = odometry_table(log, odometry_file);
+  const LogTable detections = detection_table(log, detection_file);
   make_folder(folder);
   make_folder(truth_folder);
-  Table start(kStartHeader[0]);
+  LogTable start(kStartHeader[0]);
   start.add({log.start_time, log.start.x, log.start.y, log.start.heading});
   write_text(folder / "start.csv", start.text());
   write_text(odometry_file, odometry.text());
@@ -422,7 +422,7 @@ void write_log_csv(const DriveLog& log, const fs::path& folder, const fs::path& 
   for (const ReferencePath& reference : log.references) {
     write_text(truth_folder / file_of_reference(reference.name), csv_of(reference));
   }
-  Table landmarks(kLandmarkHeaders[0]);
+  LogTable landmarks(kLandmarkHeaders[0]);
   for (const Eigen::Vector2d& place : log.landmarks) landmarks.add({place.x(), place.y()});
   if (!log.landmarks.empty()) write_text(truth_folder / "landmarks.csv", landmarks.text());
 }
@@ -504,13 +504,13 @@ ReferencePath read_reference_csv(const std::filesystem::path& path, const std::s
     }
     if (!reference.covariance.empty()) check_size(rows, reference.covariance.back(), dimension);
   }
-  rows.expect_some();
+  rows.require_some();
   return reference;
 }
 
 std::string csv_of(const ReferencePath& reference) {
   const bool headed = !reference.heading.empty(), known = !reference.covariance.empty();
-  Table table(kReferenceHeaders[(known ? kWithCovariance : 0) + (headed ? 1 : 0)]);
+  LogTable table(kReferenceHeaders[(known ? kWithCovariance : 0) + (headed ? 1 : 0)]);
   for (std::size_t f = 0; f < reference.time.size(); ++f) {
     std::vector<double> row = {reference.time[f], reference.position[f].x(),
                                reference.position[f].y()};

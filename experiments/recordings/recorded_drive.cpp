@@ -137,7 +137,7 @@ std::string references_in_words(const Itinerary& itinerary) {
   return joined(all, "; ");
 }
 
-void expect_alike(const Itinerary& first, const Itinerary& other, std::size_t number) {
+void require_alike(const Itinerary& first, const Itinerary& other, std::size_t number) {
   const std::string drive = "drive " + std::to_string(number + 1);
   if (references_in_words(first) != references_in_words(other)) {
     throw StudyError(drive + " has the references " + references_in_words(other) +
@@ -182,7 +182,7 @@ ReferencePath truth_path(const Itinerary& itinerary, const Drive& drive) {
 
 }  // namespace
 
-RecordedDrive::RecordedDrive(const DriveLog& log, const Reach& reach, double scan_delay) {
+RecordedDrive::RecordedDrive(const DriveLog& log, const LogReach& reach, double scan_delay) {
   itinerary_.start = {log.start.x, log.start.y, wrap(log.start.heading)};
   itinerary_.has_truth = false;
   itinerary_.moving_controls = moving_controls(log.controls);
@@ -194,7 +194,7 @@ RecordedDrive::RecordedDrive(const DriveLog& log, const Reach& reach, double sca
   merge(log, reach, scan_delay);
 }
 
-void RecordedDrive::merge(const DriveLog& log, const Reach& reach, double scan_delay) {
+void RecordedDrive::merge(const DriveLog& log, const LogReach& reach, double scan_delay) {
   drive_.scan_begin.assign(1, 0);
   Control control;  // the vehicle stands still before the first odometry
   auto odometry = log.odometry.begin();
@@ -223,7 +223,7 @@ void RecordedDrive::end_step(double time, const Control& control) {
 }
 
 void RecordedDrive::take_scan(const LoggedScan& scan, std::span<const Quantity> components,
-                              const Reach& reach) {
+                              const LogReach& reach) {
   if (itinerary_.step_time.empty()) {  // at the start
     itinerary_.step_time.push_back(0.0);
     drive_.controls.emplace_back();
@@ -245,7 +245,7 @@ SeveralDrives::SeveralDrives(std::vector<RecordedDrive> drives) : drives_(std::m
   itinerary_ = std::ranges::max_element(drives_, {}, scans)->itinerary();
   itinerary_.references.clear();
   for (std::size_t k = 1; k < drives_.size(); ++k)
-    expect_alike(drives_.front().itinerary(), drives_[k].itinerary(), k);
+    require_alike(drives_.front().itinerary(), drives_[k].itinerary(), k);
 }
 
 const Itinerary& SeveralDrives::itinerary_of(std::uint64_t run) const {

@@ -34,21 +34,22 @@ std::string fingerprint_of(const DriveLog& log);
 class RecordedDrive final : public DriveSource {
  public:
   /// Limits of the distance [m] of detections. Detections without a distance are always used.
-  struct Reach {
+  struct LogReach {
     double max_range;
     double min_range = 0.0;
   };
   /// Moves all scans by `scan_delay` [s] before their times in the log, because a laser scanner
   /// needs time to send a scan.
-  RecordedDrive(const DriveLog& log, const Reach& reach, double scan_delay = 0.0);
+  RecordedDrive(const DriveLog& log, const LogReach& reach, double scan_delay = 0.0);
 
   const Itinerary& itinerary() const override { return itinerary_; }
   void generate(std::uint64_t run, Drive& drive) const override;
 
  private:
-  void merge(const DriveLog& log, const Reach& reach, double scan_delay);
+  void merge(const DriveLog& log, const LogReach& reach, double scan_delay);
   void end_step(double time, const Control& control);
-  void take_scan(const LoggedScan& scan, std::span<const Quantity> components, const Reach& reach);
+  void take_scan(const LoggedScan& scan, std::span<const Quantity> components,
+                 const LogReach& reach);
 
   Itinerary itinerary_;
   Drive drive_;

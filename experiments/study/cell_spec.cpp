@@ -3,7 +3,7 @@
 
 #include "engine/errors.hpp"
 #include "experiments/external/external_filter.hpp"
-#include "experiments/study/make_drives.hpp"
+#include "experiments/study/vehicle_and_sensor.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>

@@ -4,6 +4,8 @@
 #include "engine/errors.hpp"
 #include "experiments/drives/simulated_drive.hpp"
 #include "experiments/recordings/recorded_drive.hpp"
+#include "experiments/study/read_drives.hpp"
+#include "experiments/study/vehicle_and_sensor.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>
@@ -135,15 +137,6 @@ DriveLog judged(const Settings& s, DriveLog log) {
   return log;
 }
 
-/// Number of landmarks that the detections can name; 0 if they have no identities.
-std::size_t identities_in(const DriveLog& log) {
-  std::int32_t last = -1;
-  for (const LoggedScan& scan : log.scans) {
-    for (const Detection& detection : scan.detections) last = std::max(last, detection.identity);
-  }
-  return last < 0 ? 0 : static_cast<std::size_t>(last) + 1;
-}
-
 RecordedDrive drive_of(const Settings& s, const DriveLog& log) {
   refuse_other_controls(s, log.controls);
   refuse_other_detections(s, log.components);
@@ -165,43 +158,7 @@ std::shared_ptr<const DriveSource> several_drives_of(const Study& study) {
   return at_place(place, [&] { return std::make_shared<SeveralDrives>(std::move(drives)); });
 }
 
-/// The value of a setting; nullopt if the section has none, such as the limits of the pilot.
-std::optional<double> number_of(const Settings& s, const char* in, const std::string& key) {
-  return s.has(in, key) ? std::optional(s.number(in, key)) : std::nullopt;
-}
-
 }  // namespace
-
-Vehicle vehicle_of(const Settings& s, const char* in) {
-  const auto vehicle = vehicle_named(
-      s.text(in, "vehicle"), [&](const auto& key) { return std::optional(s.text(in, key)); },
-      [&](const auto& key) { return number_of(s, in, key); });
-  expect(vehicle.has_value(), "a study has a vehicle that is not known");
-  return *vehicle;
-}
-
-Sensor sensor_of(const Settings& s, const char* in) {
-  const auto sensor =
-      sensor_named(s.text(in, "sensor"), {.forward = s.number(in, "mount_forward"),
-                                          .left = s.number(in, "mount_left"),
-                                          .turn = wrap(s.radians(in, "mount_turn_deg"))});
-  expect(sensor.has_value(), "a study has a sensor that is not known");
-  return *sensor;
-}
-
-ControlNoise control_noise_of(const Settings& s, const char* in) {
-  const auto noise =
-      control_noise_of(vehicle_of(s, in), [&](const auto& key) { return number_of(s, in, key); });
-  expect(noise.has_value(), "a study lacks the noise of a control");
-  return *noise;
-}
-
-std::size_t identities_of(const Study& study) {
-  if (study.logs.empty()) return study.world.landmarks.size();
-  std::size_t most = 0;
-  for (const auto& log : study.logs) most = std::max(most, identities_in(*log));
-  return most;
-}
 
 std::function<std::vector<Eigen::Vector2d>(std::uint64_t run)> own_landmarks_of(
     const Study& study, std::uint64_t seed) {

@@ -4,9 +4,9 @@
 #include "engine/errors.hpp"
 #include "engine/random/stream.hpp"
 #include "engine/records/columns.hpp"
-#include "experiments/recordings/log_csv.hpp"
-#include "experiments/recordings/recorded_drive.hpp"
+#include "experiments/study/enough_runs.hpp"
 #include "experiments/study/make_drives.hpp"
+#include "experiments/study/vehicle_and_sensor.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>
@@ -145,8 +145,8 @@ void refuse_column(const Study& study, const std::string& column, const std::str
 }
 
 /// Throws StudyError if cells stop by their verdict but cannot have one.
-void expect_verdict(const Study& study) {
-  if (!study.until || study.until->score != nullptr) return;
+void require_verdict(const Study& study) {
+  if (!study.until || study.until->metric) return;
   const Settings& settings = study.settings;
   const std::string problem =
       settings.place("study", "until") + ": until = " + text_of(*study.until);
@@ -164,7 +164,7 @@ void expect_verdict(const Study& study) {
 
 /// Refuses to run a part of the runs if the stopping rule needs all first runs of a cell.
 void refuse_part(const Study& study) {
-  if (study.until->score == nullptr) return;
+  if (!study.until->metric) return;
   throw StudyError(study.settings.place("study", "until") + ": until = " + text_of(*study.until) +
                    " and only part of the runs (a part cannot decide when all runs are "
                    "enough): run the whole study in one piece, or add --set study.until= to make "
@@ -226,7 +226,7 @@ std::string objection_to_observability(const Study& study) {
 namespace {
 
 /// Throws StudyError if the study stores sums of runs and cannot, or not of this range.
-void expect_summable(const Study& study, const std::optional<RunRange>& range) {
+void require_summable(const Study& study, const std::optional<RunRange>& range) {
   const Settings& settings = study.settings;
   if (!settings.lists("record", "columns", "sums")) return;
   const std::string place = settings.place("record", "columns") + ": sums ";
@@ -255,11 +255,12 @@ void expect_summable(const Study& study, const std::optional<RunRange>& range) {
 }  // namespace
 
 StudyPlan make_plan(const Study& study, std::optional<RunRange> range, ExternalPrograms programs) {
-  if (range && study.until) refuse_part(study);
-  expect_summable(study, range);
-  expect_verdict(study);
   const Settings& settings = study.settings;
   StudyPlan plan;
+  if (study.until) plan.is_enough = enough_runs(*study.until, settings.place("study", "until"));
+  if (range && study.until) refuse_part(study);
+  require_summable(study, range);
+  require_verdict(study);
   plan.name = settings.text("study", "name");
   plan.title = settings.text("study", "title");
   plan.seed = settings.count("study", "seed");
@@ -272,110 +273,10 @@ StudyPlan make_plan(const Study& study, std::optional<RunRange> range, ExternalP
   if (plan.columns.observability)
     refuse_column(study, "observability", objection_to_observability(study));
   plan.drives = drives_of(study, plan.seed);
-  if (study.until) plan.is_enough = rule_of(*study.until);
   plan.own_landmarks = own_landmarks_of(study, plan.seed);
   plan.scenario = scenario_facts(settings);
   plan.resolved_text = resolved_text(study);
   return plan;
-}
-
-namespace {
-
-namespace fs = std::filesystem;
-
-constexpr const char* kScenario = "scenario";
-
-/// Throws StudyError unless the drive has the reference that the study names.
-void expect_reference(const Settings& settings, const DriveLog& log) {
-  const std::string& name = settings.text(kScenario, "reference");
-  if (name.empty()) return;
-  item_called(name, log.references, &ReferencePath::name,
-              settings.place(kScenario, "reference") + ": reference = " + name +
-                  " (the drive has none of that name)");
-}
-
-void expect_same_drive(const Settings& settings, const std::string& expected,
-                       const std::string& fingerprint, const fs::path& folder) {
-  if (expected.empty() || expected == fingerprint) return;
-  throw StudyError(settings.place(kScenario, "data_sha256") + ": the drive in " + folder.string() +
-                   " is another one than the study was made with (its fingerprint is " +
-                   fingerprint + "): give the same files, or remove data_sha256");
-}
-
-/// The folders of recorded drives that the study names.
-std::vector<std::string> paths_in(const Settings& settings, const fs::path& study_folder) {
-  const std::string& path = settings.text(kScenario, "path");
-  std::vector<std::string> paths = recordings_in(path, {study_folder});
-  if (std::ranges::find(paths, "") == paths.end()) return paths;
-  throw StudyError(settings.place(kScenario, "path") + ": path = " + path +
-                   " names a folder that has no name (folders are separated by commas): write "
-                   "path = monday, tuesday");
-}
-
-/// Throws StudyError unless there is one run for each drive, and poses are stored at scans only,
-/// because drives differ in their steps.
-void expect_runs_to_fit(const Settings& settings, std::size_t drives) {
-  if (drives < 2) return;
-  if (settings.count("study", "runs") != drives) {
-    throw StudyError(
-        settings.place("study", "runs") + ": runs = " + settings.text("study", "runs") + " with " +
-        std::to_string(drives) +
-        " drives in scenario.path (each drive is one run): set runs = " + std::to_string(drives));
-  }
-  if (settings.text("record", "rate") == "scan") return;
-  throw StudyError(settings.place("record", "rate") +
-                   ": rate = " + settings.text("record", "rate") +
-                   " with several drives (their control steps are not the same, and rows are "
-                   "scans): set rate = scan");
-}
-
-/// The fingerprint of each drive as stored in the study; empty texts if it has none.
-std::vector<std::string> expected_fingerprints(const Settings& settings, std::size_t drives) {
-  const std::string& text = settings.text(kScenario, "data_sha256");
-  if (text.empty()) return std::vector<std::string>(drives);
-  std::vector<std::string> expected = split(text, ',');
-  if (expected.size() == drives) return expected;
-  throw StudyError(settings.place(kScenario, "data_sha256") + ": " +
-                   std::to_string(expected.size()) + " fingerprints of " + std::to_string(drives) +
-                   " drives (the study was made with as many drives as it has fingerprints): name "
-                   "as many folders in scenario.path, in the same order, or remove data_sha256");
-}
-
-/// Refuses a drive that is listed twice, because it would count as two independent ones.
-void refuse_drive_again(const Settings& settings, const std::vector<std::string>& paths,
-                        const std::vector<std::string>& fingerprints) {
-  for (std::size_t k = 0; k < fingerprints.size(); ++k) {
-    const auto first = std::ranges::find(fingerprints, fingerprints[k]) - fingerprints.begin();
-    if (static_cast<std::size_t>(first) == k) continue;
-    throw StudyError(
-        settings.place(kScenario, "path") + ": " + paths[k] + " holds the drive of " +
-        paths[static_cast<std::size_t>(first)] +
-        " again (a drive that counts twice makes any verdict too certain): remove one");
-  }
-}
-
-}  // namespace
-
-std::vector<std::shared_ptr<const DriveLog>> read_drives_of(Settings& settings,
-                                                            const fs::path& study_folder) {
-  const std::vector<std::string> paths = paths_in(settings, study_folder);
-  expect_runs_to_fit(settings, paths.size());
-  const std::vector<std::string> expected = expected_fingerprints(settings, paths.size());
-  std::vector<std::shared_ptr<const DriveLog>> logs;
-  std::vector<std::string> fingerprints;
-  for (std::size_t k = 0; k < paths.size(); ++k) {
-    const fs::path folder = at_place(settings.place(kScenario, "path"),
-                                     [&] { return find_recording(paths[k], {study_folder}); });
-    DriveLog log = read_log_csv(folder);
-    fingerprints.push_back(fingerprint_of(log));
-    expect_same_drive(settings, expected[k], fingerprints.back(), folder);
-    expect_reference(settings, log);
-    logs.push_back(std::make_shared<const DriveLog>(std::move(log)));
-  }
-  refuse_drive_again(settings, paths, fingerprints);
-  settings.replace(kScenario, "data_sha256", joined(fingerprints));
-  settings.replace(kScenario, "path", "log");
-  return logs;
 }
 
 }  // namespace montecarta::experiments

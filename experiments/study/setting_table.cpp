@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/run/study_facts.hpp"
-#include "analysis/verdict/verdict.hpp"
+#include "experiments/study/setting_table.hpp"
+
+#include "engine/core/judgement.hpp"
 #include "engine/records/columns.hpp"
 #include "engine/text/wrapped_text.hpp"
-#include "experiments/study/settings.hpp"
 #include "experiments/text/words.hpp"
 #include "filters/models/sensor.hpp"
 #include "filters/models/vehicle_settings.hpp"
@@ -203,7 +203,7 @@ void add_study(const SectionOfTable& study) {
       "when the 95 % interval of the mean of that metric is within +- the half-width. With "
       "verdict it stops when it is shown to be consistent, after 300 runs at the earliest, or not "
       "to be consistent. With verdict, N runs this is after N runs instead of 300.");
-  study.number("within", "1", kUsualWithin, kLeastMargin, kMostMargin,
+  study.number("within", "1", kUsualMarginText, kLeastMargin, kMostMargin,
                "factor within which the NEES counts as consistent. A filter is consistent if its "
                "squared errors are shown to be too large or too small by this factor at "
                "most.");
@@ -266,6 +266,14 @@ std::vector<Setting> make_table() {
 }
 
 }  // namespace
+
+std::optional<std::string> Setting::fallback_for(std::string_view scenario_kind) const {
+  for (const auto& [of_kind, value] : fallback_of_kind) {
+    if (of_kind != scenario_kind) continue;
+    return value == kRequired ? std::nullopt : std::optional(value);
+  }
+  return fallback;
+}
 
 std::span<const Setting> study_settings() {
   static const std::vector<Setting> table = make_table();

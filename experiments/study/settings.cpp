@@ -112,14 +112,6 @@ std::string most_of(const Parameter& option) {
 
 }  // namespace
 
-std::optional<std::string> Setting::fallback_for(std::string_view scenario_kind) const {
-  for (const auto& [of_kind, value] : fallback_of_kind) {
-    if (of_kind != scenario_kind) continue;
-    return value == kRequired ? std::nullopt : std::optional(value);
-  }
-  return fallback;
-}
-
 std::string demand_of(const Parameter& option) {
   const std::string unit = option.unit.empty() || option.unit == "1" ? "" : " " + option.unit;
   const std::string range = " from " + to_text(option.least) + " to " + most_of(option) + unit;
@@ -200,7 +192,7 @@ std::string Settings::scenario_kind() const {
 
 void Settings::take(const IniEntry& entry) {
   const Setting& setting = known_setting(entry);
-  const Value value{checked_value(setting, entry.value, entry.place), entry.place};
+  const SettingValue value{checked_value(setting, entry.value, entry.place), entry.place};
   const auto [at, fresh] = values_.try_emplace({entry.section, entry.key}, value);
   if (fresh) return;
   throw StudyError(entry.place + ": " + entry.section + "." + entry.key +
@@ -244,7 +236,7 @@ std::string Settings::copied_from_scenario(const Setting& setting) const {
   }
 }
 
-const Settings::Value& Settings::at(std::string_view section, std::string_view key) const {
+const Settings::SettingValue& Settings::at(std::string_view section, std::string_view key) const {
   const auto found = values_.find({std::string(section), std::string(key)});
   expect(found != values_.end(), "a setting is asked for that the table does not have");
   return found->second;

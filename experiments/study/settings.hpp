@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "filters/setup/filter_setup.hpp"
+#include "experiments/study/setting_table.hpp"
 
 #include <cstdint>
 #include <map>
@@ -38,32 +38,6 @@ struct IniText {
 /// and a line number. Throws StudyError for stray text and for entries before the first section.
 IniText read_ini(const std::string& text, const std::string& name);
 
-inline constexpr const char* kFromScenario = "scenario";
-inline constexpr const char* kRequired = "(required)";
-inline constexpr const char* kUsualWithin = "1.1";  ///< equals kUsualMargin of the analysis
-
-/// The values of a setting with which another one applies; empty: all values.
-struct Condition {
-  std::string section, key;
-  std::vector<std::string> values;
-};
-
-/// One setting of a study file. The table of settings is used for parsing, checking, the resolved
-/// text, and `montecarta list settings`.
-struct Setting : Parameter {
-  std::string section = {};
-  /// All must hold for the setting to apply: on scenario.kind, then on the vehicle, the sensor or
-  /// the noise of its section. These settings come earlier in the table.
-  std::vector<Condition> conditions = {};
-  /// Pairs (kind of scenario, default) for kinds with a default of their own. kFromScenario stands
-  /// for the scenario's value of that key, kRequired for no default.
-  std::vector<std::pair<std::string, std::string>> fallback_of_kind = {};
-
-  std::optional<std::string> fallback_for(std::string_view scenario_kind) const;
-};
-
-/// All settings but those of the filters, section by section in the order of the resolved text.
-std::span<const Setting> study_settings();
 /// `text` in the canonical spelling of the resolved study. Throws StudyError that begins with
 /// `place` if the text is not a valid value of the option.
 std::string checked_value(const Parameter& option, std::string_view text, const std::string& place);
@@ -100,7 +74,7 @@ class Settings {
   std::vector<std::pair<std::string, std::string>> section(std::string_view name) const;
 
  private:
-  struct Value {
+  struct SettingValue {
     std::string text;
     std::string place;
   };
@@ -109,9 +83,9 @@ class Settings {
   void fill_in(const std::string& name);
   std::string copied_from_scenario(const Setting& setting) const;
   const Condition* broken_condition(const Setting& setting) const;
-  const Value& at(std::string_view section, std::string_view key) const;
+  const SettingValue& at(std::string_view section, std::string_view key) const;
 
-  std::map<Name, Value> values_;
+  std::map<Name, SettingValue> values_;
 };
 
 /// Section names that a study file may have, in the order of the resolved text.

@@ -1,119 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/study/study.hpp"
 
-#include "analysis/run/study_facts.hpp"
-#include "analysis/study/cell_sums.hpp"
-#include "analysis/study/study_analysis.hpp"
-#include "analysis/study/study_comparison.hpp"
-#include "analysis/verdict/verdict.hpp"
 #include "engine/errors.hpp"
-#include "engine/records/result_file.hpp"
-#include "engine/runs/monte_carlo.hpp"
 #include "experiments/external/external_filter.hpp"
 #include "experiments/files/files.hpp"
-#include "experiments/study/make_drives.hpp"
+#include "experiments/study/read_drives.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>
 
 namespace montecarta::experiments {
-namespace {
-
-constexpr const char* kProcessorTime = "cpu_seconds";
-
-const Score* score_called(const std::string& name, const std::string& place) {
-  if (name == kProcessorTime) {
-    throw StudyError(place + ": until = " + name +
-                     " < ... (processor time differs from run to run, and results must not depend "
-                     "on it): choose another metric");
-  }
-  return &item_called(name, all_scores(), &Score::name,
-                      place + ": until = " + name + " < ... (runs have no number of that name)");
-}
-
-/// Returns whether the verdict of a cell is known after `runs` runs: it is refused, or consistent.
-/// "Consistent" needs `least_runs`, because an early stop would miss rare divergence. A file with a
-/// part of the runs decides by bets alone, which need not know of the other parts.
-bool is_verdict_known(const ResultFile& file, std::size_t cell, std::uint64_t runs,
-                      std::uint64_t least_runs, const Parallel& parallel) {
-  const CellAnalysis found =
-      analyze_cell(file, file.cells().at(cell), Until::kLevel, runs, parallel);
-  if (file.runs().size() < file.study_runs()) return found.verdict.refused_by_bets.has_value();
-  if (found.verdict.answer == analysis::Answer::consistent) return runs >= least_runs;
-  return found.verdict.is_refused;
-}
-
-/// The number in "verdict, 100 runs"; nullopt if the text is malformed.
-std::optional<std::uint64_t> least_runs_in(const std::string& text) {
-  const std::vector<std::string> parts = split(text, ',');
-  if (parts.size() != 2 || parts[0] != kUntilVerdict || !parts[1].ends_with(" runs")) return {};
-  const auto runs = to_count(parts[1].substr(0, parts[1].size() - 5));
-  return runs == std::uint64_t{0} ? std::nullopt : runs;
-}
-
-/// Parses study.until; nullopt if `text` is empty, which means all runs. Throws StudyError that
-/// begins with `place` if the text is malformed or the metric is no result (processor time).
-std::optional<Until> parse_until(const std::string& text, const std::string& place) {
-  if (text.empty()) return std::nullopt;
-  if (trimmed(text) == kUntilVerdict) return Until{};
-  if (const auto least_runs = least_runs_in(text)) {
-    Until until;
-    until.least_runs = *least_runs;
-    return until;
-  }
-  const std::vector<std::string> sides = split(text, '<');
-  const auto width = sides.size() == 2 ? to_number(sides[1]) : std::nullopt;
-  if (!width || !(*width > 0.0)) {
-    throw StudyError(place + ": until = " + text +
-                     " (METRIC < HALF-WIDTH, the half-width above 0, or verdict is needed): give "
-                     "e.g. until = position_rmse < 0.02, until = verdict, until = verdict, 100 "
-                     "runs, or nothing to make all runs");
-  }
-  Until until;
-  until.score = score_called(sides[0], place);
-  until.half_width = *width;
-  return until;
-}
-
-}  // namespace
-
-std::string text_of(const Until& until) {
-  if (until.score == nullptr && until.least_runs == Until::kUsualLeastRuns) return kUntilVerdict;
-  if (until.score == nullptr) {
-    return std::string(kUntilVerdict) + ", " + std::to_string(until.least_runs) + " runs";
-  }
-  return std::string(until.score->name) + " < " + to_text(until.half_width);
-}
-
-EnoughRuns rule_of(const Until& until) {
-  return [until](const std::filesystem::path& unfinished, std::size_t cell, std::uint64_t runs,
-                 const Parallel& parallel) {
-    const ResultFile file(unfinished);
-    if (until.score == nullptr) {
-      return is_verdict_known(file, cell, runs, until.least_runs, parallel);
-    }
-    const auto values = first_values(file, file.cells().at(cell), *until.score, runs, parallel);
-    return is_precise(values, Until::kLevel, until.half_width);
-  };
-}
-
-std::string in_words(const Until& until, std::uint64_t runs) {
-  const std::string rounds = "a cell stops after " + std::to_string(kFirstRound) + ", " +
-                             std::to_string(2 * kFirstRound) + ", " +
-                             std::to_string(4 * kFirstRound) + ", ... runs when ";
-  if (until.score == nullptr) {
-    return rounds + "its verdict is known, by intervals widened for up to " +
-           std::to_string(rounds_of(runs).size()) + " interim analyses, after " +
-           std::to_string(runs) + " runs in any case; failed runs do not count";
-  }
-  const std::string unit =
-      until.score->units == std::string("1") ? "" : std::string(" ") + until.score->units;
-  return rounds + "the 95 % interval of its mean " + until.score->name + " is within +- " +
-         to_text(until.half_width) + unit + ", after " + std::to_string(runs) +
-         " runs in any case; failed runs do not count, and values with a heavy tail are never "
-         "precise";
-}
-
 namespace {
 
 Eigen::Vector2d read_point(const IniEntry& entry) {
@@ -232,13 +128,20 @@ Study parse_study(const std::string& text, const std::string& name,
       study.settings.replace("association", "kind", "known");
   }
   refuse_sensors(study.settings, study.cells);
-  study.until =
-      parse_until(study.settings.text("study", "until"), study.settings.place("study", "until"));
+  study.until = parse_stopping_rule(study.settings.text("study", "until"),
+                                    study.settings.place("study", "until"));
   if (study.until) study.settings.replace("study", "until", text_of(*study.until));
   if (study.settings.text("study", "title").empty()) {
     study.settings.replace("study", "title", study.settings.text("study", "name"));
   }
   return study;
+}
+
+std::size_t identities_of(const Study& study) {
+  if (study.logs.empty()) return study.world.landmarks.size();
+  std::size_t most = 0;
+  for (const auto& log : study.logs) most = std::max(most, identities_in(*log));
+  return most;
 }
 
 Study read_study(const std::filesystem::path& path, std::span<const std::string> overrides) {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/study/score_table.hpp"
-#include "engine/core/plan.hpp"
 #include "experiments/recordings/drive_log.hpp"
 #include "experiments/study/cell_spec.hpp"
 #include "experiments/study/settings.hpp"
+#include "experiments/study/stopping_rule.hpp"
 #include "experiments/worlds/world.hpp"
 
+#include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -17,31 +17,6 @@
 
 namespace montecarta::experiments {
 
-/// The stopping rule study.until. With METRIC < HALF-WIDTH a cell stops when its mean is that
-/// precise. With verdict it stops when its verdict is known. With verdict, N runs it does the same,
-/// but "consistent" needs N runs.
-struct Until {
-  static constexpr double kLevel = 0.95;
-
-  const Score* score = nullptr;  ///< nullptr: the verdict decides
-  double half_width = 0.0;  ///< of the kLevel interval of the mean over runs, in the score's unit
-  /// Number of runs that the verdict "consistent" needs, because an early stop would miss rare
-  /// divergence.
-  std::uint64_t least_runs = kUsualLeastRuns;
-  static constexpr std::uint64_t kUsualLeastRuns = 300;
-};
-
-/// The rule in the canonical spelling of the resolved study.
-std::string text_of(const Until& until);
-
-/// The rule as a function that the engine calls between rounds. Failed runs are left out of means
-/// and verdicts. A score that is not a number or has a heavy tail is never precise. A verdict is
-/// not known if the cell was not tested.
-EnoughRuns rule_of(const Until& until);
-
-/// Description of the rule for `montecarta check`.
-std::string in_words(const Until& until, std::uint64_t runs);
-
 /// A study file, parsed and checked, with all defaults filled in. Nothing is simulated yet.
 struct Study {
   Settings settings;
@@ -49,8 +24,11 @@ struct Study {
   World world;  ///< of a simulation
   /// Recorded drives: one for all runs, or one for each run; empty in a simulation.
   std::vector<std::shared_ptr<const DriveLog>> logs;
-  std::optional<Until> until;  ///< when a cell stops early
+  std::optional<StoppingRule> until;  ///< when a cell stops early
 };
+
+/// Number of landmarks that detections can name; 0 if they have no identities.
+std::size_t identities_of(const Study& study);
 
 /// Reads a study file. `overrides` are "section.key=value" as given to --set; "cells.cell=..."
 /// replaces all cells. Throws StudyError with file, line, key and reason.

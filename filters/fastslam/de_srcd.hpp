@@ -139,4 +139,6 @@ std::unique_ptr<SlamFilter> make_de_srcd(const FilterSetup& setup) {
                             central_difference_points(setup, map_uncertainty(setup.options))));
 }
 
+FilterKind de_srcd_kind();
+
 }  // namespace montecarta::filters

@@ -7,7 +7,9 @@
 #include "filters/fastslam/nearest_association.hpp"
 
 #include <memory>
+#include <type_traits>
 #include <utility>
+#include <vector>
 
 namespace montecarta::filters {
 
@@ -75,20 +77,34 @@ std::unique_ptr<SlamFilter> make_fastslam2(const FilterSetup& setup) {
   return make_refined<Real, SensorPolicy>(setup, Linearised(), Linearised());
 }
 
+/// Make the filter for the sensor of the setup.
+template <class Real>
+std::unique_ptr<SlamFilter> make_fastslam1_of_sensor(const FilterSetup& setup) {
+  return with_sensor(setup.belief.sensor, [&](const auto& sensor_policy) {
+    return make_fastslam1<Real, std::decay_t<decltype(sensor_policy)>>(setup);
+  });
+}
+template <class Real>
+std::unique_ptr<SlamFilter> make_fastslam2_of_sensor(const FilterSetup& setup) {
+  return with_sensor(setup.belief.sensor, [&](const auto& sensor_policy) {
+    return make_fastslam2<Real, std::decay_t<decltype(sensor_policy)>>(setup);
+  });
+}
+
 // These large templates are compiled apart.
 extern template std::unique_ptr<SlamFilter> make_fastslam1<Lanes>(const FilterSetup&);
 extern template std::unique_ptr<SlamFilter> make_fastslam2<Lanes>(const FilterSetup&);
+extern template std::unique_ptr<SlamFilter> make_fastslam1_of_sensor<Lanes>(const FilterSetup&);
+extern template std::unique_ptr<SlamFilter> make_fastslam2_of_sensor<Lanes>(const FilterSetup&);
 
-/// Make the filter for the sensor of the setup.
-std::unique_ptr<SlamFilter> make_fastslam1_of_sensor(const FilterSetup& setup);
-std::unique_ptr<SlamFilter> make_fastslam2_of_sensor(const FilterSetup& setup);
+/// The kind of FastSLAM II and the filters like it, for range and bearing at the pose.
+FilterKind refined_kind(const char* name, const char* long_name, const char* source,
+                        std::vector<Parameter> options,
+                        std::unique_ptr<SlamFilter> make(const FilterSetup&));
+/// `kind` for all sensors, mounted anywhere.
+FilterKind of_all_sensors(FilterKind kind);
 
 FilterKind fastslam1_kind();
 FilterKind fastslam2_kind();
-FilterKind ufastslam_kind();
-FilterKind srcd_kind();
-FilterKind srcd_aided_kind();
-FilterKind srcd_pf_kind();
-FilterKind de_srcd_kind();
 
 }  // namespace montecarta::filters

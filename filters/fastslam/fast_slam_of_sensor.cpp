@@ -7,23 +7,9 @@
 
 namespace montecarta::filters {
 
-std::unique_ptr<SlamFilter> make_fastslam1_of_sensor(const FilterSetup& setup) {
-  return with_sensor(setup.belief.sensor, [&](const auto& sensor_policy) {
-    return make_fastslam1<Lanes, std::decay_t<decltype(sensor_policy)>>(setup);
-  });
-}
-
-std::unique_ptr<SlamFilter> make_fastslam2_of_sensor(const FilterSetup& setup) {
-  return with_sensor(setup.belief.sensor, [&](const auto& sensor_policy) {
-    return make_fastslam2<Lanes, std::decay_t<decltype(sensor_policy)>>(setup);
-  });
-}
-
-std::unique_ptr<SlamFilter> make_refined_of_sensor(const FilterSetup& setup,
-                                                   const SigmaPoints& points) {
-  return with_sensor(setup.belief.sensor, [&](const auto& sensor_policy) {
-    return make_refined<Lanes, std::decay_t<decltype(sensor_policy)>>(setup, points, points);
-  });
-}
+template std::unique_ptr<SlamFilter> make_fastslam1_of_sensor<Lanes>(const FilterSetup&);
+template std::unique_ptr<SlamFilter> make_fastslam2_of_sensor<Lanes>(const FilterSetup&);
+template std::unique_ptr<SlamFilter> make_refined_of_sensor<Lanes>(const FilterSetup&,
+                                                                   const SigmaPoints&);
 
 }  // namespace montecarta::filters

@@ -22,20 +22,6 @@ SigmaPoints central_difference_points(const FilterSetup& setup, MapUncertainty m
 /// two controls (pose, control) and for an observation (pose, landmark), and 2 for a landmark.
 SigmaPoints unscented_points(const FilterSetup& setup);
 
-/// Unscented FastSLAM (Kim 2008): FastSLAM II with the unscented transform at every stage.
-template <class Real, class SensorPolicy = SensorAtPose>
-std::unique_ptr<SlamFilter> make_ufastslam(const FilterSetup& setup) {
-  const SigmaPoints unscented = unscented_points(setup);
-  return make_refined<Real, SensorPolicy>(setup, unscented, unscented);
-}
-/// SRCD-FastSLAM (Ankishan 2016; EQUATIONS 8): FastSLAM II with central differences at every stage.
-/// It keeps covariances and factors them when points are drawn, which equals the square-root
-/// recursion up to rounding.
-template <class Real, class SensorPolicy = SensorAtPose>
-std::unique_ptr<SlamFilter> make_srcd(const FilterSetup& setup) {
-  const SigmaPoints points = central_difference_points(setup, map_uncertainty(setup.options));
-  return make_refined<Real, SensorPolicy>(setup, points, points);
-}
 /// SRCD-aided FastSLAM (EQUATIONS 8): poses like FastSLAM II, landmarks by central differences.
 template <class Real>
 std::unique_ptr<SlamFilter> make_srcd_aided(const FilterSetup& setup) {
@@ -50,15 +36,31 @@ std::unique_ptr<SlamFilter> make_srcd_pf(const FilterSetup& setup) {
                             Linearised());
 }
 
-// These large templates are compiled apart. The last one serves SRCD-FastSLAM and U-FastSLAM.
+/// Makes the filter for the sensor of the setup, with `points` at every stage.
+template <class Real>
+std::unique_ptr<SlamFilter> make_refined_of_sensor(const FilterSetup& setup,
+                                                   const SigmaPoints& points) {
+  return with_sensor(setup.belief.sensor, [&](const auto& sensor_policy) {
+    return make_refined<Real, std::decay_t<decltype(sensor_policy)>>(setup, points, points);
+  });
+}
+
+// These large templates are compiled apart. The last two serve SRCD-FastSLAM and U-FastSLAM.
 extern template std::unique_ptr<SlamFilter> make_srcd_aided<Lanes>(const FilterSetup&);
 extern template std::unique_ptr<SlamFilter> make_srcd_pf<Lanes>(const FilterSetup&);
 extern template std::unique_ptr<SlamFilter> make_refined<Lanes>(const FilterSetup&,
                                                                 const SigmaPoints&,
                                                                 const SigmaPoints&);
+extern template std::unique_ptr<SlamFilter> make_refined_of_sensor<Lanes>(const FilterSetup&,
+                                                                          const SigmaPoints&);
 
-/// Makes the filter for the sensor of the setup, with `points` at every stage.
-std::unique_ptr<SlamFilter> make_refined_of_sensor(const FilterSetup& setup,
-                                                   const SigmaPoints& points);
+/// Unscented FastSLAM (Kim 2008): FastSLAM II with the unscented transform at every stage.
+FilterKind ufastslam_kind();
+/// SRCD-FastSLAM (Ankishan 2016; EQUATIONS 8): FastSLAM II with central differences at every stage.
+/// It keeps covariances and factors them when points are drawn, which equals the square-root
+/// recursion up to rounding.
+FilterKind srcd_kind();
+FilterKind srcd_aided_kind();
+FilterKind srcd_pf_kind();
 
 }  // namespace montecarta::filters

@@ -63,7 +63,8 @@ NewPoint DelayedInitialisation::ray_point(const Pose& pose, double bearing) cons
 }
 
 /// The landmark that the kept points and, for bearings, this detection fix.
-std::optional<TriangulatedLandmark> DelayedInitialisation::Pair::landmark(double side) const {
+std::optional<TriangulatedLandmark> DelayedInitialisation::DetectionPair::landmark(
+    double side) const {
   const Pose& pose = gaussian.pose().mean;
   const Mounting& mounting = by.belief_.sensor.mounting;
   const Eigen::Vector2d first = gaussian.landmark(kept.first).mean;
@@ -85,7 +86,7 @@ std::optional<TriangulatedLandmark> DelayedInitialisation::Pair::landmark(double
   return landmark;
 }
 
-bool DelayedInitialisation::Pair::cross_well() const {
+bool DelayedInitialisation::DetectionPair::cross_well() const {
   const auto at = landmark(1.0);
   if (!at) return false;
   Eigen::Matrix<double, 2, 7> J = stacked(*at);
@@ -100,7 +101,7 @@ bool DelayedInitialisation::Pair::cross_well() const {
 }
 
 /// D^2 of a range for a landmark on that side.
-double DelayedInitialisation::Pair::squared_distance(double side) const {
+double DelayedInitialisation::DetectionPair::squared_distance(double side) const {
   const double never = std::numeric_limits<double>::infinity();
   const auto at = landmark(side);
   if (!at) return never;
@@ -119,7 +120,7 @@ double DelayedInitialisation::Pair::squared_distance(double side) const {
 bool DelayedInitialisation::can_advance(const CompressedGaussian& gaussian,
                                         const Detection& detection) {
   Waiting& waiting = waiting_.entry(detection.identity);
-  return waiting_.can_advance(waiting, Pair{*this, gaussian, waiting.kept, detection});
+  return waiting_.can_advance(waiting, DetectionPair{*this, gaussian, waiting.kept, detection});
 }
 
 /// Adds a point, or reuses a free one.
@@ -151,7 +152,7 @@ void DelayedInitialisation::keep(CompressedGaussian& gaussian, Kept& kept,
 std::uint32_t DelayedInitialisation::finish(CompressedGaussian& gaussian, Waiting& waiting,
                                             const Detection& detection) {
   const Kept kept = waiting.kept;
-  const auto landmark = Pair{*this, gaussian, kept, detection}.landmark(waiting.side);
+  const auto landmark = DetectionPair{*this, gaussian, kept, detection}.landmark(waiting.side);
   expect(landmark.has_value(),
          "a landmark is initialised whose lines of sight or circles do not cross");
   const std::array slots{kept.first, kept.second};

@@ -37,7 +37,7 @@ class DelayedInitialisation {
   using Waiting = WaitingLandmarks<Kept>::Waiting;
 
   /// A detection together with the kept points of its landmark.
-  struct Pair {
+  struct DetectionPair {
     const DelayedInitialisation& by;
     const CompressedGaussian& gaussian;
     const Kept& kept;

@@ -49,11 +49,11 @@ class JointBelief {
   JointEstimate joint(std::size_t landmarks) const;
 
   /// Results of the last scan.
-  struct Outcome {
+  struct UpdateOutcome {
     double log_likelihood = 0.0;
     std::uint32_t faults = 0;
   };
-  const Outcome& outcome() const { return outcome_; }
+  const UpdateOutcome& outcome() const { return outcome_; }
   const MapAssociation& association() const { return association_; }
   /// Information [1/rad^2] about a rotation of vehicle and map that the linearised system gains
   /// from all detections since the start, though they have none (EQUATIONS (15.11)). It is empty
@@ -96,7 +96,7 @@ class JointBelief {
   std::vector<NearestSearch> searches_;  ///< scratch
   std::vector<std::uint32_t> matched_;   ///< scratch: slots that the current scan needs
   std::vector<UsedDetection> used_detections_;
-  Outcome outcome_;
+  UpdateOutcome outcome_;
 };
 
 }  // namespace montecarta::filters

@@ -47,7 +47,7 @@ Matrix35 line_of_sight(const Eigen::Vector2d& away) {
 }
 
 /// Images of pairs of sigma points minus that of the centre: half their difference, and their mean.
-struct Differences {
+struct JointDifferences {
   Matrix23 odd, even;
 };
 
@@ -58,9 +58,9 @@ Eigen::Matrix2d curvature(const Matrix23& even, const Eigen::Vector2d& shift) {
 
 /// Calls `observe` for the steps along the columns of `root`; nullopt if a landmark is too near.
 template <class Observe>
-std::optional<Differences> differences(const Observe& observe, const Eigen::Vector2d& centre,
-                                       const Matrix3& root, const Wraps& wraps) {
-  Differences found;
+std::optional<JointDifferences> differences(const Observe& observe, const Eigen::Vector2d& centre,
+                                            const Matrix3& root, const Wraps& wraps) {
+  JointDifferences found;
   for (Eigen::Index k = 0; k < 3; ++k) {
     const auto ahead = observe(rule().spread * root.col(k));
     const auto back = observe(-rule().spread * root.col(k));

@@ -61,14 +61,14 @@ class LandmarkEvidence {
     Direction<Real> along;  ///< direction of the detection
   };
   /// The innovation for a position observed from a pose, and the vector to the position.
-  struct VisibleLandmark {
+  struct LandmarkInView {
     Real dx, dy, squared_range, range;
     Real range_error, bearing_error;  ///< detected minus predicted
   };
 
-  [[gnu::always_inline]] VisibleLandmark observation(std::size_t b, const Point& place) const {
+  [[gnu::always_inline]] LandmarkInView observation(std::size_t b, const Point& place) const {
     const Ray& ray = rays_[b];
-    VisibleLandmark s;
+    LandmarkInView s;
     s.dx = Real(place.x) - ray.from.x;
     s.dy = Real(place.y) - ray.from.y;
     s.squared_range = fma(s.dx, s.dx, s.dy * s.dy);
@@ -80,7 +80,7 @@ class LandmarkEvidence {
     s.bearing_error = atan2(across, along);
     return s;
   }
-  [[gnu::always_inline]] Real squared(const VisibleLandmark& s) const {
+  [[gnu::always_inline]] Real squared(const LandmarkInView& s) const {
     return fma(s.range_error * s.range_error, Real(per_range_noise_),
                s.bearing_error * s.bearing_error * Real(per_bearing_noise_));
   }
@@ -122,7 +122,7 @@ class LandmarkEvidence {
     std::array<Real, 5> S;
     S.fill(Real(0.0));
     for (std::size_t b = 0; b < rays_.size(); ++b) {
-      const VisibleLandmark s = observation(b, place);
+      const LandmarkInView s = observation(b, place);
       const auto near = s.range < Real(kLeastDistance);  // the bearing has no derivative there
       const Real per_square = select(near, Real(0.0), Real(1.0) / s.squared_range);
       const Real per_range = s.range * per_square;

@@ -11,15 +11,16 @@ namespace montecarta::models {
 template <class Real>
 struct MotionJacobians {
   /// Derivatives of the pose by one component of the control, per its unit.
-  struct Column {
+  struct MatrixColumn {
     Real x;        ///< [m]
     Real y;        ///< [m]
     Real heading;  ///< [rad]
   };
-  Real x_heading;                                 ///< [m/rad]
-  Real y_heading;                                 ///< [m/rad]
-  std::array<Column, Control::kMost> by_control;  ///< the first `controls` columns; others are 0
-  std::size_t controls;                           ///< number of controls of the vehicle
+  Real x_heading;  ///< [m/rad]
+  Real y_heading;  ///< [m/rad]
+  std::array<MatrixColumn, Control::kMost>
+      by_control;        ///< the first `controls` columns; others are 0
+  std::size_t controls;  ///< number of controls of the vehicle
 };
 
 /// The pose after one step, and its derivatives by the pose before it and by the control.
@@ -60,9 +61,9 @@ template <class Real, class V>
   const DifferentiatedStep<kControlsOf<V>> body =
       differentiated_step(vehicle, control, turning_angle, duration);
   const BasicPoint<Real> way = in_world(heading, Real(body.step.forward), Real(body.step.left));
-  using Column = typename MotionJacobians<Real>::Column;
+  using MatrixColumn = typename MotionJacobians<Real>::MatrixColumn;
   // This is not a loop, since g++ 12 fuses the products of in_world() if it vectorises one.
-  const auto column = [&](auto i) -> Column {
+  const auto column = [&](auto i) -> MatrixColumn {
     if constexpr (i < kControlsOf<V>) {
       const BodyStep<double>& by = body.by_control[i];
       const BasicPoint<Real> moved = in_world(heading, Real(by.forward), Real(by.left));

@@ -121,17 +121,17 @@ inline std::optional<Vehicle> vehicle_named(std::string_view name, const Setting
   return found;
 }
 
-/// Calls `tell(name, number)`, in SI units, or `tell(name, word)` for every number and choice of a
+/// Calls `use(name, number)`, in SI units, or `use(name, word)` for every number and choice of a
 /// vehicle, for messages.
-template <class Tell>
-void tell_vehicle(const Vehicle& vehicle, const Tell& tell) {
+template <class Use>
+void for_each_setting(const Vehicle& vehicle, const Use& use) {
   std::visit(
       [&](auto one) {
         for (const auto& n : one.numbers()) {
-          if (n.use == VehicleUse::motion) tell(si_name(n.parameter.key), one.*(n.member));
+          if (n.use == VehicleUse::motion) use(si_name(n.parameter.key), one.*(n.member));
         }
         for_each_choice(one, [&](const char* key, Integration integration) {
-          tell(std::string(key), kIntegrationNames[integration == Integration::arc ? 0 : 1]);
+          use(std::string(key), kIntegrationNames[integration == Integration::arc ? 0 : 1]);
         });
       },
       vehicle);

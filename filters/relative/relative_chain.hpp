@@ -24,14 +24,14 @@ struct RelativeChain {
     std::size_t frame;  ///< frame of its coordinates
     bool is_polar;      ///< range and bearing [m, rad]; else x and y [m]
   };
-  struct Landmark {
+  struct ChainLandmark {
     Point first;                 ///< its coordinates at initialisation
     std::optional<Point> again;  ///< those of a second initialisation, until it is joined
   };
 
   Pose start;                               ///< known pose in the map frame
   std::vector<Eigen::Index> displacements;  ///< {frame} first of the rows x, y, heading [m, m, rad]
-  std::vector<Landmark> landmarks;          ///< in the order of initialisation
+  std::vector<ChainLandmark> landmarks;     ///< in the order of initialisation
 
   std::size_t newest_frame() const { return displacements.size() - 1; }
 };

@@ -48,7 +48,7 @@ class Iteration {
       const Eigen::VectorXd before = vehicle_.rows(chain_, pairs_, step_);
       const Eigen::VectorXd innovation = pairs_.residual + before;
       const Eigen::VectorXd weights = S_.solve(innovation);
-      tell(innovation, i == 0, outcome);
+      report(innovation, i == 0, outcome);
       const Eigen::VectorXd change = projected_ * weights - before;
       if (i >= iterations ||
           R_.matrixL().solve(change).norm() < (is_exact() ? kSettledExactly : kSettled)) {
@@ -94,7 +94,7 @@ class Iteration {
     return R_.info() == Eigen::Success && S_.info() == Eigen::Success;
   }
 
-  void tell(const Eigen::VectorXd& innovation, bool is_first, RelativeOutcome& outcome) const {
+  void report(const Eigen::VectorXd& innovation, bool is_first, RelativeOutcome& outcome) const {
     const double distance = S_.matrixL().solve(innovation).squaredNorm();
     if (is_first) {
       outcome.nis = distance;

@@ -4,6 +4,7 @@
 #include "engine/core/slam_filter.hpp"
 #include "engine/namespaces.hpp"
 #include "filters/models/parameter.hpp"
+#include "filters/models/sensor_kinds.hpp"
 
 #include <functional>
 #include <memory>
@@ -14,9 +15,6 @@ namespace montecarta::filters {
 
 struct FilterSetup;
 
-/// The name of the sensor of range and bearing alone.
-std::vector<std::string> range_and_bearing();
-
 /// A filter by name, one line in the table of factory.cpp.
 struct FilterKind {
   std::string name;       ///< name in study files
@@ -26,7 +24,7 @@ struct FilterKind {
   Capabilities reports = {};
   std::vector<Parameter> options;  ///< in the order of the documentation
   /// Sensors that it supports, mounted at the pose; empty means all sensors, mounted anywhere.
-  std::vector<std::string> sensors = range_and_bearing();
+  std::vector<std::string> sensors = {RangeBearingSensor::kName};
   /// True if it initialises landmarks that one detection does not fix. It then needs known
   /// association.
   bool delays_initialisation = false;

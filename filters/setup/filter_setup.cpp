@@ -2,7 +2,6 @@
 #include "filters/setup/filter_setup.hpp"
 
 #include "engine/errors.hpp"
-#include "filters/setup/filter_kind.hpp"
 
 #include <charconv>
 
@@ -26,7 +25,5 @@ double FilterOptions::number(std::string_view name) const {
 std::size_t FilterOptions::integer(std::string_view name) const {
   return static_cast<std::size_t>(std::stoull(choice(name)));
 }
-
-std::vector<std::string> range_and_bearing() { return {RangeBearingSensor::kName}; }
 
 }  // namespace montecarta::filters

@@ -74,7 +74,7 @@ Eigen::MatrixXd PosesGivenMap::covariance(const Elimination& elimination,
   Eigen::Matrix<double, 3, Eigen::Dynamic> with_chosen(3, poses);  // covariance with those so far
   Eigen::Index row = 0;
   for (std::size_t i = 0, next = 0; next < chosen.size(); ++i) {
-    const Step& step = steps_[i];
+    const LaplaceStep& step = steps_[i];
     by_landmarks =
         (by_landmarks.lazyProduct(step.transition.transpose()) + step.by_landmarks).eval();
     own = (step.transition * own * step.transition.transpose() + step.covariance).eval();

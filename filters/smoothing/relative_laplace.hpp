@@ -28,7 +28,7 @@ class PosesGivenMap {
 
   /// The last pose of a segment, given the pose before it, the landmarks and all measurements: x =
   /// transition x_before + by_landmarks' l + N(0, covariance), up to a constant.
-  struct Step {
+  struct LaplaceStep {
     Eigen::Matrix3d transition;
     Eigen::Matrix3d covariance;
     Rows by_landmarks;  ///< {row of l, 3}
@@ -36,7 +36,7 @@ class PosesGivenMap {
 
   void step_backwards(const Elimination& elimination, Eigen::Index rows);
 
-  std::vector<Step> steps_;  ///< {segment}
+  std::vector<LaplaceStep> steps_;  ///< {segment}
   MapMoments map_;
 };
 

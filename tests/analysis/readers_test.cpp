@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Law: other readers of a result file find the ANEES that we find.
+#include "analysis/render/tables/files.hpp"
 #include "analysis/statistics/interval.hpp"
 #include "analysis/statistics/nees_bounds.hpp"
 #include "analysis/study/frame.hpp"

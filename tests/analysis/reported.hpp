@@ -2,6 +2,7 @@
 #pragma once
 
 #include "analysis/study/metric.hpp"
+#include "analysis/study/registry.hpp"
 #include "analysis/study/study_analysis.hpp"
 
 #include <algorithm>

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Damaged result files: refused with the name of the file, or analysed to the end.
 #include "analysis/render/page/replay/replay.hpp"
-#include "analysis/render/tables/tables.hpp"
+#include "analysis/render/tables/terminal.hpp"
 #include "analysis/study/study_analysis.hpp"
 #include "engine/errors.hpp"
-#include "engine/records/merge.hpp"
+#include "engine/records/read_description.hpp"
 #include "engine/records/result_layout.hpp"
+#include "engine/records/shard.hpp"
 #include "tests/analysis/synthetic_result.hpp"
 #include "tests/doubles/damage.hpp"
 #include "tests/doubles/scratch_folder.hpp"

@@ -34,8 +34,8 @@ class BranchTracer {
   /// From particles to their parents, which lived at `time`. Lines of one parent become the branch
   /// that leads to it.
   void step_back(std::span<const std::uint32_t> parents, double time) {
-    for (const Line& line : alive_) ++child_count_[parents[line.particle]];
-    std::vector<Line> before;
+    for (const DrawnLine& line : alive_) ++child_count_[parents[line.particle]];
+    std::vector<DrawnLine> before;
     for (const auto& [particle, branch] : alive_) {
       const std::uint32_t parent = parents[particle];
       if (child_count_[parent] == 1) {
@@ -52,20 +52,20 @@ class BranchTracer {
       tree_.branches[open_[parent]].leaves += tree_.branches[branch].leaves;
     }
     alive_ = std::move(before);
-    for (const Line& line : alive_) {
+    for (const DrawnLine& line : alive_) {
       child_count_[line.particle] = 0;
       open_[line.particle] = kNoBranch;
     }
   }
 
  private:
-  struct Line {
+  struct DrawnLine {
     std::uint32_t particle;
     std::size_t branch;
   };
 
   AncestryTree& tree_;
-  std::vector<Line> alive_;
+  std::vector<DrawnLine> alive_;
   std::vector<std::uint32_t> child_count_;  ///< {particle} that are alive; zero between steps
   std::vector<std::size_t> open_;           ///< {particle} the branch that forks there
 };

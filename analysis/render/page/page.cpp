@@ -2,7 +2,7 @@
 #include "analysis/render/page/page.hpp"
 
 #include "analysis/render/page/html.hpp"
-#include "analysis/render/tables/tables.hpp"
+#include "analysis/render/tables/files.hpp"
 #include "analysis/study/frame.hpp"
 #include "analysis/study/verdict_table.hpp"
 #include "engine/errors.hpp"

@@ -20,9 +20,6 @@ namespace montecarta::analysis {
 std::string studied_sentence(const StudyAnalysis& study);
 /// The page's heading: which study, how much of it.
 Section title_section(const StudyAnalysis& study);
-/// The verdict on each cell in short, with three numbers and the NEES over time; empty without
-/// truth.
-Section verdict_cards(const StudyAnalysis& study);
 /// The failed runs, with reasons.
 Section failure_section(const StudyAnalysis& study);
 /// Compares every cell with the first one, if two cells have truth.

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The verdict on each cell as a card: word, sentence, three numbers and the NEES over time.
+#include "analysis/render/page/verdict_cards.hpp"
+
 #include "analysis/render/page/html.hpp"
 #include "analysis/render/page/page.hpp"
 #include "analysis/statistics/interval.hpp"
@@ -8,6 +10,7 @@
 #include "analysis/study/imported_notes.hpp"
 #include "analysis/study/prose.hpp"
 #include "analysis/study/verdict_table.hpp"
+#include "analysis/verdict/sentence.hpp"
 #include "engine/numbers/angle.hpp"
 #include "engine/text/number_text.hpp"
 

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/render/tables/tables.hpp"
+#include "analysis/render/tables/analysis_file.hpp"
+
 #include "analysis/study/frame.hpp"
 #include "analysis/study/metric.hpp"
 #include "analysis/study/reference_sums.hpp"
+#include "analysis/study/registry.hpp"
 #include "analysis/study/verdict_table.hpp"
+#include "analysis/verdict/sentence.hpp"
 #include "engine/records/h5.hpp"
 
 namespace montecarta::analysis {

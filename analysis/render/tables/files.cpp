@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Tables as CSV and LaTeX.
-#include "analysis/render/tables/tables.hpp"
+#include "analysis/render/tables/files.hpp"
+
 #include "analysis/study/frame.hpp"
 #include "analysis/study/metric.hpp"
+#include "analysis/study/registry.hpp"
 #include "analysis/study/verdict_table.hpp"
+#include "analysis/verdict/sentence.hpp"
 #include "engine/text/visible_text.hpp"
 
 #include <map>

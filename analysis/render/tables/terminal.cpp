@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/render/tables/tables.hpp"
+#include "analysis/render/tables/terminal.hpp"
+
 #include "analysis/study/imported_notes.hpp"
 #include "analysis/study/metric.hpp"
 #include "analysis/study/reference_sums.hpp"
+#include "analysis/study/registry.hpp"
 #include "analysis/study/section.hpp"
 #include "analysis/study/text_table.hpp"
 #include "analysis/study/verdict_table.hpp"
@@ -48,7 +50,7 @@ std::vector<Section> terminal_sections(const StudyAnalysis& study) {
   std::erase_if(sections, [](const Section& section) { return !section.is_for_terminal; });
   std::ranges::stable_sort(sections, {}, [](const Section& section) {
     const auto& places = reading_order();
-    return std::ranges::find(places, section.name, &Place::section) - places.begin();
+    return std::ranges::find(places, section.name, &SectionPlace::section) - places.begin();
   });
   return sections;
 }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/render/tables/tables.hpp"
+#include "analysis/render/tables/analysis_file.hpp"
+#include "analysis/render/tables/files.hpp"
 #include "analysis/run/reference_scores.hpp"
 #include "analysis/study/reference_sums.hpp"
+#include "analysis/study/registry.hpp"
 #include "engine/records/h5.hpp"
 #include "tests/analysis/recorded_result.hpp"
 #include "tests/analysis/reported.hpp"

@@ -4,6 +4,7 @@
 #include "analysis/render/page/html.hpp"
 #include "analysis/render/page/page.hpp"
 #include "analysis/study/metric.hpp"
+#include "analysis/study/registry.hpp"
 #include "analysis/study/section.hpp"
 #include "analysis/study/study_analysis.hpp"
 #include "analysis/study/text_table.hpp"
@@ -87,7 +88,7 @@ std::string without_explanations(std::string page) {
 TEST(ReadingOrder, PlacesEverySectionAndFigureOnce) {
   std::set<std::string> names;
   std::size_t places = 0;
-  for (const Place& place : reading_order()) {
+  for (const SectionPlace& place : reading_order()) {
     names.insert(place.section);
     for (const std::string& figure : place.figures) names.insert("figure " + figure);
     places += 1 + place.figures.size();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/render/tables/tables.hpp"
-
+#include "analysis/render/tables/analysis_file.hpp"
+#include "analysis/render/tables/files.hpp"
+#include "analysis/render/tables/terminal.hpp"
 #include "analysis/statistics/interval.hpp"
 #include "analysis/statistics/spread.hpp"
 #include "analysis/study/frame.hpp"

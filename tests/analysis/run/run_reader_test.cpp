@@ -4,7 +4,7 @@
 #include "analysis/render/figures/ancestry_figure.hpp"
 #include "analysis/render/figures/path_figure.hpp"
 #include "analysis/render/page/replay/replay.hpp"
-#include "analysis/render/tables/tables.hpp"
+#include "analysis/render/tables/terminal.hpp"
 #include "analysis/study/study_analysis.hpp"
 #include "engine/threads/parallel.hpp"
 #include "tests/analysis/synthetic_result.hpp"

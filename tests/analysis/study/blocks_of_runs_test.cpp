@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Sums over blocks of runs, merged, are the sums over all runs.
-#include "analysis/render/tables/tables.hpp"
+#include "analysis/render/tables/terminal.hpp"
 #include "analysis/run/criteria_of.hpp"
 #include "analysis/study/cell_sums.hpp"
 #include "analysis/study/metric.hpp"
+#include "analysis/study/registry.hpp"
 #include "analysis/study/stored_sums.hpp"
 #include "analysis/study/study_analysis.hpp"
 #include "analysis/study/verdict_table.hpp"

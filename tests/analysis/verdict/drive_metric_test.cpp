@@ -5,6 +5,7 @@
 #include "analysis/statistics/sampler_scale.hpp"
 #include "analysis/study/cell_sums.hpp"
 #include "analysis/study/metric.hpp"
+#include "analysis/study/registry.hpp"
 #include "analysis/verdict/drive_verdict.hpp"
 #include "analysis/verdict/innovations.hpp"
 #include "engine/random/stream.hpp"
@@ -26,9 +27,9 @@ Eigen::Vector3d three_normals(RngStream& draw) {
 }
 
 /// A drive of ten minutes along x with a scan and a fix a second.
-class Drive10 : public ::testing::Test {
+class DriveOfTenMinutes : public ::testing::Test {
  protected:
-  Drive10() {
+  DriveOfTenMinutes() {
     for (std::size_t s = 0; s < 600; ++s) times_.push_back(static_cast<double>(s + 1));
     RngStream draw({.seed = 8, .purpose = Draw::test});
     for (const double time : times_) {
@@ -68,7 +69,7 @@ class Drive10 : public ::testing::Test {
   ReferencePath reference_{"reference", {}, {}, {}};
 };
 
-TEST_F(Drive10, AFilterThatForgetsIsJudgedByTheDriveAndOneWithLastingErrorsIsNot) {
+TEST_F(DriveOfTenMinutes, AFilterThatForgetsIsJudgedByTheDriveAndOneWithLastingErrorsIsNot) {
   EXPECT_THAT(in_words(judged(run(5.0, 0.3))), StartsWith("optimistic: NEES "));
   EXPECT_EQ(in_words(judged(run(1.0, 0.3), 3.0)), "consistent within 3");
   const DriveConsistency right = judged(run(1.0, 0.3));
@@ -80,7 +81,7 @@ TEST_F(Drive10, AFilterThatForgetsIsJudgedByTheDriveAndOneWithLastingErrorsIsNot
   EXPECT_LT(found.mean.leads().ratio.lower, 0.7);
 }
 
-TEST_F(Drive10, AConservativeFilterIsFound) {
+TEST_F(DriveOfTenMinutes, AConservativeFilterIsFound) {
   reference_.covariance.assign(600, 0.01 * Eigen::Matrix3d::Identity());
   for (std::size_t s = 0; s < 600; ++s) {
     reference_.position[s] = {times_[s], 0.0};
@@ -89,7 +90,7 @@ TEST_F(Drive10, AConservativeFilterIsFound) {
   EXPECT_THAT(in_words(judged(run(0.05, 0.3))), StartsWith("conservative: NEES "));
 }
 
-TEST_F(Drive10, ManyRunsOnOneDriveSayNoMoreThanOne) {
+TEST_F(DriveOfTenMinutes, ManyRunsOnOneDriveSayNoMoreThanOne) {
   const DriveScores one = scores(run(1.0, 0.9));
   const std::vector<DriveScores> many(50, one);
   const DriveConsistency of_one = judge_drive(std::span(&one, 1), 0.95, 1.1);
@@ -99,7 +100,7 @@ TEST_F(Drive10, ManyRunsOnOneDriveSayNoMoreThanOne) {
   EXPECT_NEAR(of_many.minutes, of_one.minutes, 1e-9);
 }
 
-TEST_F(Drive10, AReferenceThatIsTheEstimateIsRefusedAndOneThatFedItPointedOut) {
+TEST_F(DriveOfTenMinutes, AReferenceThatIsTheEstimateIsRefusedAndOneThatFedItPointedOut) {
   RunRows rows = run(1.0, 0.3);
   for (std::size_t s = 0; s < 600; ++s) {
     rows.spread.mean[3 * s] = reference_.position[s].x();
@@ -114,14 +115,14 @@ TEST_F(Drive10, AReferenceThatIsTheEstimateIsRefusedAndOneThatFedItPointedOut) {
   EXPECT_FALSE(judged(run(1.0, 0.3)).mean.is_below_reference);
 }
 
-TEST_F(Drive10, WithoutFixesOrCovarianceIsNotTested) {
+TEST_F(DriveOfTenMinutes, WithoutFixesOrCovarianceIsNotTested) {
   RunRows rows = run(1.0, 0.3);
   rows.spread.covariance.clear();
   EXPECT_EQ(in_words(judged(rows)), "not tested");
   EXPECT_EQ(in_words(judge_drive({}, 0.95, 1.1)), "not tested");
 }
 
-TEST_F(Drive10, ItsTableHasARowForACellAndSaysWhatToConsider) {
+TEST_F(DriveOfTenMinutes, ItsTableHasARowForACellAndSaysWhatToConsider) {
   reference_.position[0] = {0.0, 0.0};  // where the drive starts
   RunCriteria criteria = criteria_of_scans(times_);
   criteria.references.emplace_back(reference_, times_, Pose{});

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/verdict/joint_nees.hpp"
 
-#include "analysis/render/tables/tables.hpp"
+#include "analysis/render/tables/files.hpp"
 #include "analysis/run/joint_scores.hpp"
 #include "analysis/statistics/nees_bounds.hpp"
 #include "analysis/statistics/spread.hpp"

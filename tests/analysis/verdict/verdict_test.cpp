@@ -2,6 +2,7 @@
 #include "analysis/verdict/verdict.hpp"
 
 #include "analysis/run/study_facts.hpp"
+#include "analysis/verdict/sentence.hpp"
 #include "engine/errors.hpp"
 #include "tests/doubles/matchers.hpp"
 
@@ -192,7 +193,7 @@ TEST(Words, NameWhatIsOffWhereTheSizeIsRight) {
   EXPECT_EQ(words(family(Family::correlation, {{"a and b", {-0.6, -0.4}}})),
             "inconsistent: an unreported correlation of -0.60 to -0.40 between a and b");
   EXPECT_THAT(words(family(Family::between_runs, {{"runs", {0.3, 0.6}}})),
-              HasSubstr("scales of their own (standard deviation 0.30 to 0.60)"));
+              HasSubstr("scales of their own (standard deviation of 0.30 to 0.60)"));
 }
 
 TEST(Words, ListEveryFamilyThatIsShown) {

@@ -5,6 +5,7 @@
 #include "analysis/run/whitened_run.hpp"
 #include "analysis/statistics/interval.hpp"
 #include "analysis/statistics/nees_bounds.hpp"
+#include "analysis/verdict/sentence.hpp"
 #include "engine/errors.hpp"
 #include "tests/analysis/verdict_studies.hpp"
 #include "tests/doubles/matchers.hpp"

@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Files without a seal and with contradictory numbers are refused when they are opened.
+#include "engine/records/check_description.hpp"
+
 #include "engine/errors.hpp"
 #include "engine/records/merge.hpp"
+#include "engine/records/read_description.hpp"
 #include "engine/records/result_file.hpp"
 #include "engine/records/result_layout.hpp"
+#include "engine/records/result_schema.hpp"
 #include "engine/records/seal.hpp"
+#include "engine/records/shard.hpp"
 #include "tests/doubles/damage.hpp"
 #include "tests/doubles/matchers.hpp"
 #include "tests/doubles/reader_program.hpp"

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/records/result_layout.hpp"
-
 #include "engine/records/columns.hpp"
 #include "engine/records/fingerprint.hpp"
 #include "engine/records/h5.hpp"
 #include "engine/records/provenance.hpp"
+#include "engine/records/read_description.hpp"
+#include "engine/records/result_format.hpp"
+#include "engine/records/result_schema.hpp"
 #include "tests/doubles/complaint.hpp"
 #include "tests/doubles/matchers.hpp"
 #include "tests/doubles/scratch_folder.hpp"

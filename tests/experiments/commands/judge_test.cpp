@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Estimates of another program, end to end.
 #include "analysis/study/metric.hpp"
+#include "analysis/study/registry.hpp"
 #include "analysis/study/study_analysis.hpp"
 #include "engine/records/result_file.hpp"
 #include "experiments/text/words.hpp"

@@ -6,6 +6,7 @@
 #include "engine/errors.hpp"
 #include "experiments/recordings/log_csv.hpp"
 #include "experiments/recordings/recorded_drive.hpp"
+#include "experiments/study/enough_runs.hpp"
 #include "experiments/study/make_drives.hpp"
 #include "experiments/study/settings.hpp"
 #include "experiments/study/study.hpp"
@@ -102,7 +103,7 @@ TEST(Plan, KeepsTheMarginInTheText) {
   const StudyPlan plan = make_plan(parsed(with("[scenario]", "within = 1.25\n[scenario]")));
   EXPECT_EQ(margin_in(plan.resolved_text), 1.25);
   EXPECT_EQ(margin_in(make_plan(parsed(kGoodStudy)).resolved_text), kUsualMargin);
-  EXPECT_EQ(kUsualWithin, to_text(kUsualMargin));
+  EXPECT_EQ(kUsualMarginText, to_text(kUsualMargin));
 }
 
 TEST(Plan, HasAMixtureWhereTheEstimatesHaveOne) {
@@ -181,7 +182,7 @@ std::string study_until(const std::string& rule) {
   return with("runs = 20", "runs = 20\nuntil = " + rule);
 }
 
-TEST(Until, IsPartOfTheStudyInOneSpelling) {
+TEST(StoppingRule, IsPartOfTheStudyInOneSpelling) {
   const Study study = parsed(study_until("position_rmse<2e-2"));
   ASSERT_TRUE(study.until);
   EXPECT_EQ(text_of(*study.until), "position_rmse < 0.02");
@@ -199,7 +200,7 @@ TEST(Until, IsPartOfTheStudyInOneSpelling) {
 }
 
 // Studies without it have the text, and so the SHA-256, that they always had.
-TEST(Until, IsNotSaidWhereItIsNotAsked) {
+TEST(StoppingRule, IsNotSaidWhereItIsNotAsked) {
   const Study study = parsed(kGoodStudy);
   EXPECT_FALSE(study.until);
   EXPECT_FALSE(make_plan(study).is_enough);
@@ -207,17 +208,17 @@ TEST(Until, IsNotSaidWhereItIsNotAsked) {
   EXPECT_FALSE(parsed(study_until("")).until);
 }
 
-TEST(Until, RefusesWhatItCannotDecide) {
-  EXPECT_THAT(complaint(study_until("postion_rmse < 1")), HasSubstr("trial.ini:4"));
-  EXPECT_THAT(complaint(study_until("cpu_seconds < 1")), HasSubstr("processor time"));
+TEST(StoppingRule, RefusesWhatItCannotDecide) {
+  EXPECT_THAT(plan_complaint(study_until("postion_rmse < 1")), HasSubstr("trial.ini:4"));
+  EXPECT_THAT(plan_complaint(study_until("cpu_seconds < 1")), HasSubstr("processor time"));
   for (const char* rule :
        {"position_rmse", "position_rmse < ", "position_rmse < -1", "position_rmse < 0",
         "position_rmse < 1 < 2", "< 3", "position_rmse > 1"}) {
-    EXPECT_THAT(complaint(study_until(rule)), HasSubstr("until = ")) << rule;
+    EXPECT_THAT(plan_complaint(study_until(rule)), HasSubstr("until = ")) << rule;
   }
 }
 
-TEST(Until, MayBeTheVerdict) {
+TEST(StoppingRule, MayBeTheVerdict) {
   const Study study = parsed(study_until(" verdict "));
   ASSERT_TRUE(study.until);
   EXPECT_EQ(text_of(*study.until), "verdict");

@@ -4,6 +4,7 @@
 #include "experiments/recordings/log_csv.hpp"
 #include "experiments/study/make_drives.hpp"
 #include "experiments/study/make_plan.hpp"
+#include "experiments/study/vehicle_and_sensor.hpp"
 #include "tests/analysis/studied_result.hpp"
 #include "tests/doubles/complaint.hpp"
 #include "tests/doubles/matchers.hpp"

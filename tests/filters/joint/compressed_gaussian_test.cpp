@@ -164,7 +164,7 @@ std::size_t first_far(const CompressedGaussian& gaussian) {
   return slot;
 }
 
-TEST(CompressedGaussian, RestsWhereItSavesNothing) {
+TEST(CompressedGaussian, IsNotUsedWhereItSavesNothing) {
   const SmallWorld world = large_world(340);
   Driven<CompressedGaussian> driven({Retraction::invariant, 0});
   for (std::size_t scan = 0; scan < 340; ++scan) driven.drive(world, scan);

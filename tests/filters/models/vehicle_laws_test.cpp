@@ -133,7 +133,7 @@ TEST_P(EveryVehicle, IsFoundByItsNameAndNumbers) {
   EXPECT_EQ(name_of(found), name_of(vehicle()));
   EXPECT_EQ(found.index(), vehicle().index());
   const Vehicle changed = vehicle_named(name_of(vehicle()), nothing, note).value();
-  tell_vehicle(changed, [&](const std::string& name, const auto& value) {
+  for_each_setting(changed, [&](const std::string& name, const auto& value) {
     if constexpr (std::is_same_v<std::decay_t<decltype(value)>, double>) {
       EXPECT_EQ(value, asked.at(name)) << name;
     }

@@ -192,9 +192,10 @@ bool looks_alike(const Ellipse& a, const Ellipse& b, double least) {
 
 /// The changes since `shown`, which is brought up to date. A landmark that is no longer in the
 /// map has an ellipse of NaN.
-std::vector<ReplayMap::Landmark> changes_at(const StoredMap& stored, std::size_t scan, double least,
-                                            std::vector<std::optional<Ellipse>>& shown) {
-  std::vector<ReplayMap::Landmark> changed;
+std::vector<ReplayMap::DrawnLandmark> changes_at(const StoredMap& stored, std::size_t scan,
+                                                 double least,
+                                                 std::vector<std::optional<Ellipse>>& shown) {
+  std::vector<ReplayMap::DrawnLandmark> changed;
   for (std::size_t l = 0; l < shown.size(); ++l) {
     const auto row = static_cast<std::uint32_t>(l);
     const auto ellipse = stored.at(scan, l);
@@ -256,7 +257,7 @@ void fill_up(Indices& shown, std::size_t count, std::size_t most) {
 /// Chooses the particles of frame `f - 1` and ties those of frame `f` to them.
 void tie_to_parents(const StoredParticles& stored, std::span<const std::size_t> scans,
                     std::size_t f, std::size_t most, ReplayParticles& particles) {
-  ReplayParticles::Frame& before = particles.frames[f - 1];
+  ReplayParticles::Snapshot& before = particles.frames[f - 1];
   Indices parents;
   if (!stored.ancestor.empty()) {
     for (const std::uint32_t i : particles.frames[f].shown) {
@@ -272,7 +273,8 @@ void tie_to_parents(const StoredParticles& stored, std::span<const std::size_t> 
 }
 
 /// Weights of the particles that are shown, divided by the largest one.
-void add_weights(const StoredParticles& stored, std::size_t scan, ReplayParticles::Frame& frame) {
+void add_weights(const StoredParticles& stored, std::size_t scan,
+                 ReplayParticles::Snapshot& frame) {
   if (stored.log_weight.empty()) return;
   const auto all = stored.log_weight.subspan(scan * stored.count, stored.count);
   const double heaviest = *std::ranges::max_element(all);
@@ -283,7 +285,7 @@ void add_weights(const StoredParticles& stored, std::size_t scan, ReplayParticle
 
 ReplayParticles thin_particles(const StoredParticles& stored, std::span<const std::size_t> scans,
                                std::size_t most) {
-  ReplayParticles particles{stored.count, std::vector<ReplayParticles::Frame>(scans.size())};
+  ReplayParticles particles{stored.count, std::vector<ReplayParticles::Snapshot>(scans.size())};
   if (scans.empty()) return particles;
   fill_up(particles.frames.back().shown, stored.count, most);
   for (std::size_t f = scans.size() - 1; f > 0; --f) {
@@ -429,7 +431,7 @@ void add_place(double offset, double size, std::string& text) {
 }
 
 /// [m] The greatest distance from the estimate along an axis.
-double reach_of(const ReplayParticles::Frame& frame, double x, double y) {
+double reach_of(const ReplayParticles::Snapshot& frame, double x, double y) {
   double size = 0.0;
   for (std::size_t i = 0; i < frame.x.size(); ++i) {
     for (const double offset : {std::abs(frame.x[i] - x), std::abs(frame.y[i] - y)}) {
@@ -441,7 +443,7 @@ double reach_of(const ReplayParticles::Frame& frame, double x, double y) {
 
 /// Each particle: x and y by the estimate, four digits; its parent, two; the root of its
 /// weight, as dark as it is drawn, one.
-Json json_of(const ReplayParticles::Frame& frame, double x, double y) {
+Json json_of(const ReplayParticles::Snapshot& frame, double x, double y) {
   const double size = reach_of(frame, x, y);
   std::string dots, parents, weights;
   for (std::size_t i = 0; i < frame.x.size(); ++i) {

@@ -19,7 +19,7 @@ namespace montecarta::analysis {
 /// Some of a cell's particles at every frame, such that the ancestors of all that are shown are
 /// shown too.
 struct ReplayParticles {
-  struct Frame {
+  struct Snapshot {
     std::vector<std::uint32_t> shown;   ///< indices of particles, increasing
     std::vector<std::uint32_t> parent;  ///< their parents' places in the frame before; empty where
                                         ///< no ancestry is stored, and in the first frame
@@ -27,17 +27,17 @@ struct ReplayParticles {
     std::vector<double> weight;         ///< of 1, the heaviest of the frame's; empty: not stored
   };
   std::size_t all = 0;  ///< particles of the cell
-  std::vector<Frame> frames;
+  std::vector<Snapshot> frames;
 };
 
 /// The changes of the map at a frame: the landmarks that are new or have changed.
 struct ReplayMap {
-  struct Landmark {
+  struct DrawnLandmark {
     std::uint32_t row = 0;  ///< which one it is
     Ellipse ellipse;        ///< kReplayShare of its probability
   };
   std::size_t frame = 0;
-  std::vector<Landmark> changed;
+  std::vector<DrawnLandmark> changed;
 };
 
 /// The probability that an ellipse of a replay holds.
@@ -102,9 +102,6 @@ std::vector<ReplayMap> read_maps(const ResultFile& file, const StoredCell& cell,
 
 /// A run as the page's player reads it (page/script/replay.js).
 std::string replay_json(const Replay& replay);
-
-/// The last moment of a replay as a drawing (SVG), with the first cells as the player shows them.
-std::string replay_still(const Replay& replay);
 
 /// The run that chosen_run() chooses; without cells where there is none.
 Replay chosen_replay(const ResultFile& file, std::optional<std::uint64_t> run);

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The last moment of a replay as a drawing: what page/script/panel.js shows of each cell.
+#include "analysis/render/page/replay/replay_still.hpp"
+
 #include "analysis/render/page/html.hpp"
 #include "analysis/render/page/replay/replay.hpp"
 #include "engine/numbers/angle.hpp"
@@ -153,17 +155,17 @@ void draw_ellipse(const Ellipse& e, const std::string& colour, const View& view,
 /// The map after its last change.
 void draw_map(const ReplayCell& cell, const std::string& colour, const View& view,
               Drawing& drawing) {
-  std::vector<ReplayMap::Landmark> latest;
+  std::vector<ReplayMap::DrawnLandmark> latest;
   for (const ReplayMap& map : cell.maps) {
-    for (const ReplayMap::Landmark& landmark : map.changed) {
-      const auto found = std::ranges::find(latest, landmark.row, &ReplayMap::Landmark::row);
+    for (const ReplayMap::DrawnLandmark& landmark : map.changed) {
+      const auto found = std::ranges::find(latest, landmark.row, &ReplayMap::DrawnLandmark::row);
       if (found == latest.end())
         latest.push_back(landmark);
       else
         *found = landmark;
     }
   }
-  for (const ReplayMap::Landmark& landmark : latest) {
+  for (const ReplayMap::DrawnLandmark& landmark : latest) {
     draw_ellipse(landmark.ellipse, colour, view, drawing);
   }
 }
@@ -186,7 +188,7 @@ void draw_surroundings(const Replay& replay, const View& view, Drawing& drawing)
 void draw_particles(const ReplayCell& cell, const std::string& colour, double radius,
                     const View& view, Drawing& drawing) {
   if (cell.particles.frames.empty()) return;
-  const ReplayParticles::Frame& frame = cell.particles.frames.back();
+  const ReplayParticles::Snapshot& frame = cell.particles.frames.back();
   for (std::size_t i = 0; i < frame.x.size(); ++i) {
     const double weight = frame.weight.empty() ? 1.0 : frame.weight[i];
     if (!view.shows(frame.x[i], frame.y[i]) || !std::isfinite(weight)) continue;

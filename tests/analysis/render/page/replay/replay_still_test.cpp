@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/render/page/replay/replay_still.hpp"
+
 #include "analysis/render/page/replay/replay.hpp"
 #include "tests/analysis/recorded_result.hpp"
 #include "tests/analysis/synthetic_result.hpp"

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/study/enough_runs.hpp"
+
+#include "analysis/study/cell_sums.hpp"
+#include "analysis/study/study_analysis.hpp"
+#include "engine/errors.hpp"
+#include "engine/records/result_file.hpp"
+#include "engine/runs/monte_carlo.hpp"
+#include "experiments/text/words.hpp"
+
+#include <filesystem>
+
+namespace montecarta::experiments {
+namespace {
+
+constexpr const char* kProcessorTime = "cpu_seconds";
+
+const Score& score_called(const std::string& name, const std::string& place) {
+  if (name == kProcessorTime) {
+    throw StudyError(place + ": until = " + name +
+                     " < ... (processor time differs from run to run, and results must not depend "
+                     "on it): choose another metric");
+  }
+  return item_called(name, all_scores(), &Score::name,
+                     place + ": until = " + name + " < ... (runs have no number of that name)");
+}
+
+/// Returns whether the verdict of a cell is known after `runs` runs: it is refused, or consistent.
+/// "Consistent" needs `least_runs`, because an early stop would miss rare divergence. A file with a
+/// part of the runs decides by bets alone, which need not know of the other parts.
+bool is_verdict_known(const ResultFile& file, std::size_t cell, std::uint64_t runs,
+                      std::uint64_t least_runs, const Parallel& parallel) {
+  const CellAnalysis found =
+      analyze_cell(file, file.cells().at(cell), StoppingRule::kLevel, runs, parallel);
+  if (file.runs().size() < file.study_runs()) return found.verdict.refused_by_bets.has_value();
+  if (found.verdict.answer == analysis::Answer::consistent) return runs >= least_runs;
+  return found.verdict.is_refused;
+}
+
+}  // namespace
+
+EnoughRuns enough_runs(const StoppingRule& rule, const std::string& place) {
+  const Score* const score = rule.metric ? &score_called(*rule.metric, place) : nullptr;
+  return [rule, score](const std::filesystem::path& unfinished, std::size_t cell,
+                       std::uint64_t runs, const Parallel& parallel) {
+    const ResultFile file(unfinished);
+    if (score == nullptr) return is_verdict_known(file, cell, runs, rule.least_runs, parallel);
+    const auto values = first_values(file, file.cells().at(cell), *score, runs, parallel);
+    return is_precise(values, StoppingRule::kLevel, rule.half_width);
+  };
+}
+
+std::string in_words(const StoppingRule& rule, std::uint64_t runs) {
+  const std::string rounds = "a cell stops after " + std::to_string(kFirstRound) + ", " +
+                             std::to_string(2 * kFirstRound) + ", " +
+                             std::to_string(4 * kFirstRound) + ", ... runs when ";
+  if (!rule.metric) {
+    return rounds + "its verdict is known, by intervals widened for up to " +
+           std::to_string(rounds_of(runs).size()) + " interim analyses, after " +
+           std::to_string(runs) + " runs in any case; failed runs do not count";
+  }
+  const std::string units = score_called(*rule.metric, "study.until").units;
+  return rounds + "the 95 % interval of its mean " + *rule.metric + " is within +- " +
+         to_text(rule.half_width) + (units == "1" ? "" : " " + units) + ", after " +
+         std::to_string(runs) +
+         " runs in any case; failed runs do not count, and values with a heavy tail are never "
+         "precise";
+}
+
+}  // namespace montecarta::experiments

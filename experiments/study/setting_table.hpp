@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/namespaces.hpp"
+#include "filters/models/parameter.hpp"
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace montecarta::experiments {
+
+inline constexpr const char* kFromScenario = "scenario";
+inline constexpr const char* kRequired = "(required)";
+/// The values of a setting with which another one applies; empty: all values.
+struct Condition {
+  std::string section, key;
+  std::vector<std::string> values;
+};
+
+/// One setting of a study file. The table of settings is used for parsing, checking, the resolved
+/// text, and `montecarta list settings`.
+struct Setting : Parameter {
+  std::string section = {};
+  /// All must hold for the setting to apply: on scenario.kind, then on the vehicle, the sensor or
+  /// the noise of its section. These settings come earlier in the table.
+  std::vector<Condition> conditions = {};
+  /// Pairs (kind of scenario, default) for kinds with a default of their own. kFromScenario stands
+  /// for the scenario's value of that key, kRequired for no default.
+  std::vector<std::pair<std::string, std::string>> fallback_of_kind = {};
+
+  std::optional<std::string> fallback_for(std::string_view scenario_kind) const;
+};
+
+/// All settings but those of the filters, section by section in the order of the resolved text.
+std::span<const Setting> study_settings();
+
+}  // namespace montecarta::experiments
