@@ -24,7 +24,7 @@ constexpr Score kAssociationScores[] = {
     {"association_clutter", "1", "false alarms accepted", sum_of_counts<&AssociationRows::clutter>},
 };
 
-/// Mean over runs of the detections with a known landmark; NaN where nobody counted them.
+/// Mean over runs of the number of detections of known landmarks; NaN if they were not counted.
 double detections_of(const CellAnalysis& cell) {
   double all = 0.0;
   for (const char* one : {"association_correct", "association_wrong", "association_new_again",

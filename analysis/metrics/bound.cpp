@@ -15,7 +15,7 @@ const std::vector<ResultNumber<Efficiency>> kEfficiencies = {
     {"heading_efficiency", "1", &Efficiency::heading},
     {"map_efficiency", "1", &Efficiency::map}};
 
-/// One row for each scan: the Cramer-Rao bound of position and heading.
+/// A file with one row for each scan: the Cramer-Rao bound of position and heading.
 Frame bound_frame(const StudyAnalysis& study) {
   if (study.bound.empty()) return {};
   return {{{"time", "s", study.times},

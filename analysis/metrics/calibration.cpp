@@ -33,7 +33,7 @@ class CalibrationOverRuns final : public MergedSums<CalibrationOverRuns> {
 
 using Chosen = std::function<bool(const JudgedPits&)>;
 
-/// The tests of a cell that are chosen.
+/// The chosen tests of a cell.
 std::vector<const JudgedPits*> tests_of(const CellAnalysis& cell, const Chosen& chosen) {
   std::vector<const JudgedPits*> found;
   for (const JudgedPits& one : cell.get<Calibrations>()) {
@@ -42,7 +42,7 @@ std::vector<const JudgedPits*> tests_of(const CellAnalysis& cell, const Chosen& 
   return found;
 }
 
-/// Whether any cell has a test that is chosen.
+/// Returns whether any cell has a chosen test.
 bool has_test(const StudyAnalysis& study, const Chosen& chosen) {
   return std::ranges::any_of(
       study.cells, [&](const CellAnalysis& cell) { return !tests_of(cell, chosen).empty(); });
@@ -63,7 +63,7 @@ std::vector<std::string> quantities_of(const StudyAnalysis& study) {
   return found;
 }
 
-/// "2 of 14": tests of all moments that were made and found a fault.
+/// Text of the number of tests that found a fault, of those made: "2 of 14".
 std::string faults_text(const std::vector<const JudgedPits*>& tests) {
   std::size_t made = 0, faults = 0;
   for (const JudgedPits* one : tests) {
@@ -74,7 +74,7 @@ std::string faults_text(const std::vector<const JudgedPits*>& tests) {
   return std::to_string(faults) + " of " + std::to_string(made);
 }
 
-/// The verdicts at the end of the run; "-" if a quantity is not judged.
+/// A row of the verdicts at the end of the run; "-" if a quantity is not judged.
 std::vector<TextTable::Entry> row_of(const CellAnalysis& cell, const std::string& by,
                                      const std::vector<std::string>& quantities) {
   std::vector<TextTable::Entry> row = {{"cell", cell.label, Align::left}, {"by", by, Align::left}};
@@ -89,8 +89,8 @@ std::vector<TextTable::Entry> row_of(const CellAnalysis& cell, const std::string
   return row;
 }
 
-/// One row for each cell and way of judging: the verdicts at the end of the run, and the number of
-/// faults at all moments. No rows if nothing is judged.
+/// A table with one row for each cell and law of the transform: the verdicts at the end of the run,
+/// and the number of faults at all times. It has no rows if nothing is judged.
 TextTable calibration_table(const StudyAnalysis& study) {
   TextTable table;
   const std::vector<std::string> quantities = quantities_of(study);
@@ -104,7 +104,7 @@ TextTable calibration_table(const StudyAnalysis& study) {
   return table;
 }
 
-/// Adds how to read the table; nothing without a table.
+/// Adds notes on how to read the table, if there is one.
 void add_calibration_notes(const StudyAnalysis& study, Section& section) {
   const bool has_errors = has_test(study, is_of_error), has_nees = has_test(study, is_of_nees);
   if (has_errors) section.add_notes("errors");
@@ -120,7 +120,7 @@ void add_calibration_notes(const StudyAnalysis& study, Section& section) {
   }
 }
 
-/// One row for each test. The p-value is that of the test alone.
+/// A file with one row for each test. The p-value is that of the test alone.
 Frame calibration_frame(const StudyAnalysis& study) {
   Frame frame;
   for (const CellAnalysis& cell : study.cells) {
@@ -143,7 +143,7 @@ Frame calibration_frame(const StudyAnalysis& study) {
   return frame;
 }
 
-/// Counts as shares of all values, minus the points of the ECDF.
+/// {point} Counts divided by the number of values, minus the points of the ECDF.
 std::vector<double> deviations(std::size_t values,
                                const std::function<std::size_t(std::size_t)>& count_at) {
   std::vector<double> found;
@@ -153,7 +153,7 @@ std::vector<double> deviations(std::size_t values,
   return found;
 }
 
-/// The curves of all cells with the band of the cell that has most values.
+/// Panels with the curves of all cells, and with the band of the cell that has most values.
 std::vector<Panel> panels_like(const StudyAnalysis& study, const JudgedPits& like,
                                const std::string& name) {
   Panel blank{name, "ECDF - PIT, " + like.quantity + " at " + fixed_seconds(like.time), {}, {}};
@@ -180,7 +180,7 @@ std::vector<Panel> panels_like(const StudyAnalysis& study, const JudgedPits& lik
   return panels;
 }
 
-/// A panel for each quantity and time that is chosen. No data if nothing is judged.
+/// A figure with a panel for each chosen quantity and time. It has no data if nothing is judged.
 Figure pit_figure(const StudyAnalysis& study, const Chosen& chosen, Figure figure) {
   std::vector<const JudgedPits*> drawn;
   for (const CellAnalysis& cell : study.cells) {
@@ -205,8 +205,8 @@ Figure pit_figure(const StudyAnalysis& study, const Chosen& chosen, Figure figur
   return figure;
 }
 
-/// ECDFs at the end of the run by the Gaussian and by the particles where they are stored, and of
-/// the NEES at the end of each quarter.
+/// Figures of the ECDFs at the end of the run, by the Gaussian and, if they are stored, by the
+/// particles, and of the NEES at the end of each quarter.
 std::vector<Figure> calibration_figures(const StudyAnalysis& study) {
   const auto is_last = [&](const JudgedPits& one, const char* by) {
     return is_of_error(one) && one.by == by && one.time == study.times.back();

@@ -16,8 +16,8 @@ namespace {
 
 /// Root mean squares over runs and scans that have a NEES, in the units of the components.
 struct ComponentErrors {
-  std::vector<double> error;      ///< {component}
-  std::vector<double> deviation;  ///< {component} as the other program believes
+  std::vector<double> error;      ///< {component} RMS error
+  std::vector<double> deviation;  ///< {component} RMS deviation that the other program reports
 };
 
 class ComponentsOverRuns final : public MergedSums<ComponentsOverRuns> {
@@ -57,7 +57,8 @@ class ComponentsOverRuns final : public MergedSums<ComponentsOverRuns> {
     samples_ += 1.0;
   }
 
-  std::vector<double> squares_, variances_;  ///< {component} sums
+  /// {component} sums of squared errors and of reported variances.
+  std::vector<double> squares_, variances_;
   double samples_ = 0.0;
 };
 

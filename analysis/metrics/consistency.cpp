@@ -16,7 +16,7 @@
 namespace montecarta::analysis {
 namespace {
 
-/// Mean over the scans of a run, by its leading moments.
+/// Mean NEES over the scans of a run, by its leading moments.
 double mean_nees(const MeasuredRun& run, ErrorBlock block) {
   const NeesRows* nees = run.metrics.leading_nees();
   return nees == nullptr ? kNaN : mean_of_finite(nees->value[static_cast<std::size_t>(block)]);
@@ -45,7 +45,7 @@ class NeesOverRuns final : public MergedSums<NeesOverRuns> {
   static constexpr auto parts() { return std::tuple(added(&NeesOverRuns::nees_)); }
 
  private:
-  /// All runs of a cell have the same moments.
+  /// Makes the sums at the first run: all runs of a cell have the same moments.
   void begin(const RunMetrics& metrics) {
     for (const Moments moments : kMoments) {
       if (metrics.nees(moments).value[0].empty()) continue;
@@ -59,7 +59,7 @@ class NeesOverRuns final : public MergedSums<NeesOverRuns> {
   }
 
   const RunCriteria* criteria_;
-  std::vector<NeesAccumulator> nees_;  ///< leading first
+  std::vector<NeesAccumulator> nees_;  ///< leading moments first
 };
 
 void add_nees(const NeesResult& nees, std::vector<Frame::Column>& all) {
@@ -108,7 +108,7 @@ Panel nees_panel(const StudyAnalysis& study, ErrorBlock block) {
   return panel;
 }
 
-/// The ratio of the NEES to its expectation, over time, for a cell.
+/// The NEES ratio of a cell over time.
 StripRow strip_of(const CellAnalysis& cell, const NeesResult& nees) {
   const auto dimension = static_cast<double>(nees.series.dimension);
   StripRow row{
@@ -131,7 +131,7 @@ StripPanel nees_strips(const StudyAnalysis& study, ErrorBlock block) {
   return panel;
 }
 
-/// Strips for more than kMostRatioCurves cells, else curves.
+/// A figure of the NEES ratio: strips for more than kMostRatioCurves cells, else curves.
 Figure nees_figure(const StudyAnalysis& study, const std::vector<ErrorBlock>& blocks,
                    const std::string& of_strips, const std::string& of_curves, Figure figure) {
   std::vector<StripPanel> strips;

@@ -92,7 +92,8 @@ Figure ess_figure(const StudyAnalysis& study) {
   return figure;
 }
 
-/// How far back the common ancestor lies, or, without ancestry, how many particles count.
+/// Text of the age of the common ancestor or, without ancestry, of the number of effective
+/// particles.
 std::string diversity_summary(const StudyAnalysis& study) {
   const CellNumber back = [](const CellAnalysis& cell) {
     return cell.get<LineageSummary>().coalescence;
@@ -121,7 +122,7 @@ std::vector<Figure> particles_figures(const StudyAnalysis& study) {
 
 Metric particles_metric() { return {.scores = kParticlesScores}; }
 
-/// Apart from the scores: in files its series come last.
+/// A metric of its own, without the scores, since its series come last in files.
 Metric diversity_metric() {
   return {.scan_series = kParticlesSeries,
           .sections = particles_sections,

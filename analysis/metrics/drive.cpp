@@ -23,7 +23,7 @@
 namespace montecarta::analysis {
 namespace {
 
-/// {reference with known errors}
+/// {reference with known errors} verdicts of one cell
 using DriveConsistencies = std::vector<DriveConsistency>;
 
 class DrivesOverRuns final : public MergedSums<DrivesOverRuns> {
@@ -49,10 +49,10 @@ class DrivesOverRuns final : public MergedSums<DrivesOverRuns> {
  private:
   double level_, within_;
   bool are_own_;
-  std::vector<std::vector<DriveScores>> runs_;  ///< {reference}{run}
+  std::vector<std::vector<DriveScores>> runs_;  ///< {reference}{run} scores
 };
 
-/// Calls visit(cell, reference, its DriveConsistency).
+/// Calls visit(cell, reference, DriveConsistency) for every cell and reference.
 template <class Visit>
 void for_each_drive(const StudyAnalysis& study, const Visit& visit) {
   for (const CellAnalysis& cell : study.cells) {
@@ -69,7 +69,7 @@ void for_each_drive(const StudyAnalysis& study, const Visit& visit) {
 std::string block_text(const DriveConsistency& drive, ErrorBlock block) {
   const CorrelatedAverage& found = drive.mean.blocks[static_cast<std::size_t>(block)];
   if (!(found.effective_samples > 0.0)) return "-";
-  // The ends lie at very different distances: each is to be read by itself.
+  // The ends lie at very different distances from the mean, so each has its own digits.
   return readable(found.mean) + " [" + compact(found.ratio.lower) + ", " +
          compact(found.ratio.upper) + "]";
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Errors beside the deviations that the filter reports (STATISTICS 8).
+// Errors and the deviations that the filter reports (STATISTICS 8).
 #include "analysis/run/measured_run.hpp"
 #include "analysis/study/cell_report.hpp"
 #include "analysis/study/error_moments.hpp"
@@ -69,7 +69,7 @@ Panel envelope_panel(const CellAnalysis& cell, std::size_t style, std::size_t co
   return panel;
 }
 
-/// A row of panels, forward, left and heading, for each of the first cells.
+/// A figure with a row of panels, forward, left and heading, for each of the first cells.
 Figure envelope_figure(const StudyAnalysis& study) {
   Figure figure = figure_of("error_envelopes");
   std::vector<Panel> panels;

@@ -49,7 +49,8 @@ constexpr ScanSeries kErrorsSeries[] = {
      true},
 };
 
-/// The cells' curves and the Cramer-Rao bound or, where there is none, the linearised reference.
+/// A panel with the cells' curves and the Cramer-Rao bound or, if there is none, the linearised
+/// reference.
 Panel error_panel(const StudyAnalysis& study, const std::string& name, const std::string& label,
                   const CellValues& values_of, const std::vector<double>& bound) {
   Panel panel{name, label, cell_curves(study, values_of), {}, Scale::from_zero};

@@ -42,7 +42,7 @@ std::vector<Section> families_sections(const StudyAnalysis& study) {
   return table_section(section, family_table(study));
 }
 
-/// One row for each member of each family; of scans too.
+/// A file with one row for each member of each family, scans included.
 Frame families_frame(const StudyAnalysis& study) {
   Frame frame;
   for (const CellAnalysis& cell : study.cells) {

@@ -17,7 +17,7 @@
 namespace montecarta::analysis {
 namespace {
 
-/// The widest of the bounds of the lags that are tested; NaN if none is.
+/// The widest bound of the tested lags; NaN if none is tested.
 double widest_bound(const Innovations& found) {
   double widest = kNaN;
   for (const double bound : found.white_bound) widest = std::fmax(widest, bound);
@@ -47,7 +47,7 @@ class InnovationsOverRuns final : public MergedSums<InnovationsOverRuns> {
 
  private:
   const RunCriteria* criteria_;
-  bool has_common_scans_;  ///< else runs are drives of their own, without a mean over time
+  bool has_common_scans_;  ///< false if runs are drives of their own, which have no mean over time
   InnovationSums innovations_;
 };
 
@@ -89,7 +89,7 @@ void innovations_series(const CellAnalysis& cell, std::vector<Frame::Column>& al
   all.push_back({"nis_upper", "1", ends_of(innovations->bounds, &Interval::upper)});
 }
 
-/// "74 of 3 components at 0.05 s of run 0"
+/// Text of the largest innovation: "74 of 3 components at 0.05 s of run 0".
 std::string largest_text(const LargestInnovation& largest) {
   const std::string components = std::to_string(std::llround(largest.dof));
   return compact(largest.nis) + " of " + components +
@@ -116,8 +116,8 @@ std::vector<TextTable::Entry> innovation_row(const CellAnalysis& cell, double le
   return row;
 }
 
-/// Where white innovations stay: one band for each number of pairs of scans; where there are none
-/// so far apart, no band.
+/// The bands that white innovations do not leave: one for each number of pairs of scans; none if no
+/// pairs are that far apart.
 std::vector<Band> white_bands(const StudyAnalysis& study) {
   std::set<double> bounds;
   for (const CellAnalysis& cell : study.cells) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pose and map together.
+// NEES of pose and map together.
 #include "analysis/verdict/joint_nees.hpp"
 
 #include "analysis/run/measured_run.hpp"
@@ -26,7 +26,7 @@ constexpr Score kJointNeesScores[] = {
      },
      Better::neither}};
 
-/// [s] of the joint estimates.
+/// [s] Times of the joint estimates.
 std::vector<double> times_of(const RunCriteria& criteria) {
   std::vector<double> times;
   for (const std::uint32_t scan : criteria.joint_scans) times.push_back(criteria.times[scan]);
@@ -49,7 +49,7 @@ class JointNeesOverRuns final : public MergedSums<JointNeesOverRuns> {
   JointNeesSums joint_;
 };
 
-/// At the last stored scan.
+/// Adds the joint NEES at the last stored scan.
 void joint_nees_numbers(const CellAnalysis& cell, Frame::Row& all) {
   const JointConsistency& joint = cell.get<JointConsistency>();
   const bool known = joint.is_judged();
@@ -85,7 +85,8 @@ std::vector<TextTable::Entry> joint_row(const CellAnalysis& cell,
       {"verdict", in_words(joint.verdict)}};
 }
 
-/// Adds how to read the table, or why there are no numbers; nothing where none are stored.
+/// Adds notes on how to read the table, or the reason why there are no numbers; nothing if no joint
+/// estimates are stored.
 void add_joint_notes(const StudyAnalysis& study, Section& section) {
   if (std::ranges::any_of(study.cells, is_judged)) {
     section.add_notes("notes", {{"scans", std::to_string(study.joint_times.size())},
@@ -103,7 +104,7 @@ void add_joint_notes(const StudyAnalysis& study, Section& section) {
   }
 }
 
-/// One row for each cell and stored scan: joint NEES per component with its bounds.
+/// A file with one row for each cell and stored scan: joint NEES per component with its bounds.
 Frame joint_frame(const StudyAnalysis& study) {
   Frame frame;
   for (const CellAnalysis& cell : study.cells) {
@@ -122,8 +123,8 @@ Frame joint_frame(const StudyAnalysis& study) {
   return frame;
 }
 
-/// The ends of the band, which is the narrower the larger the map is; one band for each number of
-/// runs that it is for.
+/// Adds the ends of the band, which is the narrower the larger the map is; one band for each number
+/// of runs.
 void add_band(const CellAnalysis& cell, double level, bool is_first, Panel& panel) {
   const std::vector<Interval>& bounds = cell.get<JointConsistency>().bounds;
   panel.curves.push_back({is_first ? level_text(level) + " band" : "", kReferenceStyle,
@@ -146,8 +147,8 @@ StripPanel joint_strips(const StudyAnalysis& study) {
   return panel;
 }
 
-/// NEES of pose and map together at the scans at which joint estimates are stored, with the band of
-/// a consistent filter. Without data where no cell was judged by them.
+/// A figure of the NEES of pose and map together at the scans with joint estimates, with the band
+/// of a consistent filter. It has no data if no cell was judged by them.
 Figure joint_figure(const StudyAnalysis& study) {
   Figure figure = figure_of("joint_nees");
   const StripPanel strips = joint_strips(study);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Ancestors of the particles, their effective number, and the Monte Carlo error of few of them.
+// Numbers of ancestors of the particles, and the Monte Carlo error that comes from few of them.
 #include "analysis/run/measured_run.hpp"
 #include "analysis/study/lineage_sums.hpp"
 #include "analysis/study/metric.hpp"

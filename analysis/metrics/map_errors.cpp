@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How far the landmarks of final maps are from the truth.
+// Distances of the landmarks of final maps from the truth.
 #include "analysis/run/measured_run.hpp"
 #include "analysis/study/cell_report.hpp"
 #include "analysis/study/efficiency.hpp"
@@ -70,7 +70,7 @@ std::vector<TextTable::Entry> map_error_row(const CellAnalysis& cell) {
           {"spurious", text("landmarks_spurious")}};
 }
 
-/// Reason, and the labels of the cells it is true of: "a, b".
+/// {reason} Labels of the cells without map errors: "a, b".
 std::map<std::string, std::string> cells_without_map_errors(const StudyAnalysis& study) {
   std::map<std::string, std::string> cells;
   for (const CellAnalysis& cell : study.cells) {
@@ -81,13 +81,13 @@ std::map<std::string, std::string> cells_without_map_errors(const StudyAnalysis&
   return cells;
 }
 
-/// Whether any cell of a simulation has final maps to judge.
+/// Returns whether any cell of a simulation has final maps to judge.
 bool has_map_errors(const StudyAnalysis& study) {
   return std::ranges::any_of(
       study.cells, [](const CellAnalysis& cell) { return cell.get<MapErrors>().missing.empty(); });
 }
 
-/// Adds how to read the table, or why there are no numbers.
+/// Adds notes on how to read the table, or the reason why there are no numbers.
 void add_map_notes(const StudyAnalysis& study, Section& section) {
   if (has_map_errors(study)) {
     section.add_notes("notes", {{"level", level_text(study.level)},
@@ -107,7 +107,8 @@ void add_map_notes(const StudyAnalysis& study, Section& section) {
   }
 }
 
-/// One row for each cell and landmark: error and NEES over runs, with the bounds of that NEES.
+/// A file with one row for each cell and landmark: error and NEES over runs, with the bounds of
+/// that NEES.
 Frame landmarks_frame(const StudyAnalysis& study) {
   Frame frame;
   for (const CellAnalysis& cell : study.cells) {
@@ -127,7 +128,7 @@ Frame landmarks_frame(const StudyAnalysis& study) {
   return frame;
 }
 
-/// Range of the landmark errors or, with unknown identities, of GOSPA.
+/// Text of the range of the landmark errors or, if identities are unknown, of GOSPA.
 std::string map_summary(const StudyAnalysis& study) {
   const NumberText metres = [](double value) { return readable(value) + " m"; };
   const auto range_of = [&](const char* score) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Landmarks in the map, and the surveyed ones among them.
+// Numbers of landmarks in the map, and of the surveyed ones among them.
 #include "analysis/run/measured_run.hpp"
 #include "analysis/study/metric.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Independent measurements of the path.
+// Distances from independent measurements of the path.
 #include "analysis/run/measured_run.hpp"
 #include "analysis/study/cell_report.hpp"
 #include "analysis/study/reference_sums.hpp"
@@ -18,7 +18,7 @@
 namespace montecarta::analysis {
 namespace {
 
-/// No fix is known better than to a centimetre, no heading than to a hundredth of a degree.
+/// Text of a mean, to a centimetre or a hundredth of a degree: no fix is known better.
 std::string mean_text(const Spread& spread, double factor = 1.0) {
   return with_error_to(2, factor * spread.summary.mean, factor * spread.summary.standard_error());
 }
@@ -27,7 +27,7 @@ std::string count_text(const Spread& spread) {
   return with_error_to(1, spread.summary.mean, spread.summary.standard_error());
 }
 
-/// The middle run and the two ends: "1.55 [1.41, 2.20]".
+/// Text of the median run and the two ends: "1.55 [1.41, 2.20]".
 std::string runs_text(const Spread& spread) {
   if (std::isnan(spread.median)) return "-";
   const auto text = [](double value) { return with_error_to(2, value, kNaN); };
@@ -38,7 +38,7 @@ std::string of_text(std::size_t k, std::size_t n) {
   return std::to_string(k) + " of " + std::to_string(n);
 }
 
-/// Runs that can be judged, failed ones included.
+/// Number of runs that can be judged, failed ones included.
 std::size_t judged_runs(const CellAnalysis& cell, const ReferenceAnalysis& against) {
   return against.with_fixes() + cell.failures.size();
 }
@@ -93,7 +93,7 @@ std::vector<TextTable::Entry> map_row(const StudyAnalysis& study, const CellAnal
   return row;
 }
 
-/// What cells are compared by.
+/// The score by which cells are compared.
 double ReferenceScores::*compared_score(const JudgedReference& reference) {
   return reference.compares_raw() ? &ReferenceScores::rms : &ReferenceScores::aligned_rms;
 }
@@ -122,7 +122,7 @@ std::vector<TextTable::Entry> baseline_row(const CellAnalysis& cell, const CellA
   return row;
 }
 
-/// "the drive", "2 of 3 drives".
+/// Text of the drives with fixes: "the drive", "2 of 3 drives".
 std::string drives_in_words(const StudyAnalysis& study, const JudgedReference& reference) {
   if (study.own_drives == 0) return "the drive";
   return std::to_string(reference.drives) + " of " + std::to_string(study.own_drives) + " drives";
@@ -166,7 +166,8 @@ Frame references_frame(const StudyAnalysis& study) {
   return frame;
 }
 
-/// One row for each fix of the leading reference, one column for each cell: RMS distance over runs.
+/// A file with one row for each fix of the leading reference, and one column for each cell: RMS
+/// distance over runs.
 Frame reference_errors_frame(const StudyAnalysis& study) {
   if (study.references.empty() || study.own_drives > 0) return {};
   Frame frame{{{"time", "s", study.references.front().times}}};
@@ -178,12 +179,12 @@ Frame reference_errors_frame(const StudyAnalysis& study) {
   return frame;
 }
 
-/// Nearer than this a reference cannot tell [m]: satellite positions are good to a centimetre.
+/// [m] The least distance that a reference resolves: satellite positions are good to a centimetre.
 constexpr double kLeastError = 0.01;
 
 constexpr double kTwoDecades = 100.0;
 
-/// One axis for all panels, which begins at kLeastError where it is logarithmic.
+/// The scale of the axis that all panels share; it begins at kLeastError if it is logarithmic.
 Scale scale_of(const std::vector<Panel>& panels) {
   double least = std::numeric_limits<double>::infinity(), greatest = 0.0;
   for (const Panel& panel : panels) {
@@ -198,13 +199,13 @@ Scale scale_of(const std::vector<Panel>& panels) {
   return greatest > kTwoDecades * least ? Scale::logarithmic : Scale::from_zero;
 }
 
-/// Adds panels to a figure, which says so where there are several.
+/// Adds panels to a figure; its sentence mentions them if there are several.
 void add(const std::vector<Panel>& panels, const std::vector<double>& times, Figure& figure) {
   if (panels.size() > 1) figure.sentence += " " + prose("references", "panels");
   add_panels(panels, times, figure);
 }
 
-/// The comparison uses the leading reference.
+/// The score of a run by the leading reference, which the comparison uses.
 template <double ReferenceScores::*kValue>
 double of_reference(const MeasuredRun& run) {
   return run.references.empty() ? kNaN : run.references.front().scores.*kValue;

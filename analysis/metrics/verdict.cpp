@@ -54,7 +54,7 @@ class VerdictOverRuns final : public MergedSums<VerdictOverRuns> {
   std::optional<WholeError> sums_;
 };
 
-/// p_FAMILY of each family; NaN where it does not apply.
+/// Adds p_FAMILY for each family; NaN if it does not apply.
 void verdict_numbers(const CellAnalysis& cell, Frame::Row& all) {
   const Verdict& found = cell.verdict;
   all.insert(all.end(),
@@ -70,7 +70,7 @@ void verdict_numbers(const CellAnalysis& cell, Frame::Row& all) {
   }
 }
 
-/// Simultaneous interval of the ratio of every scan; NaN if a scan is not judged.
+/// Adds the simultaneous interval of the ratio of every scan; NaN if a scan is not judged.
 void verdict_series(const CellAnalysis& cell, std::vector<Frame::Column>& all) {
   const FamilyTest* scans = cell.verdict.find(Family::scan);
   if (scans == nullptr) return;
@@ -88,7 +88,7 @@ void verdict_series(const CellAnalysis& cell, std::vector<Frame::Column>& all) {
   all.push_back(std::move(upper));
 }
 
-/// "2 of 3 cells are optimistic, 1 is undecided", in the order of the cells.
+/// Text of the answers, in the order of the cells: "2 of 3 cells are optimistic, 1 is undecided".
 std::string answers_text(const StudyAnalysis& study) {
   std::vector<std::string> names;
   for (const CellAnalysis& cell : study.cells) names.push_back(name_of(cell.verdict.answer));

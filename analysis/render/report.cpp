@@ -40,7 +40,7 @@ void refuse_existing(const fs::path& directory, ExistingReport existing) {
   }
 }
 
-/// Takes the element of this name out of `all`; nullopt where there is none.
+/// Removes the element of this name from `all` and returns it; nullopt if there is none.
 template <class Named>
 std::optional<Named> take(const std::string& name, std::vector<Named>& all) {
   const auto found = std::ranges::find(all, name, &Named::name);
@@ -50,7 +50,7 @@ std::optional<Named> take(const std::string& name, std::vector<Named>& all) {
   return taken;
 }
 
-/// A folded section without a heading has that of its first figure.
+/// The section with a heading: a folded one without a heading takes that of its first figure.
 Section titled(Section section) {
   const bool is_open = section.shown == Section::Shown::open;
   if (is_open || !section.title.empty() || section.figures.empty()) return section;
@@ -78,7 +78,7 @@ std::vector<Section> arranged(std::vector<Section> sections, std::vector<Figure>
   return page;
 }
 
-/// All parts of the page.
+/// All sections of the page.
 std::vector<Section> all_sections(const ResultFile& file, const StudyAnalysis& study,
                                   const StudyComparison& comparison, const Replay& replay,
                                   const ReportOptions& options) {
@@ -98,7 +98,8 @@ std::vector<Section> all_sections(const ResultFile& file, const StudyAnalysis& s
 }
 
 /// Writes the tables and draws the figures, four of them by each gnuplot. The number is fixed
-/// because bytes of a drawing depend on the one before it, but must not depend on the threads.
+/// because the bytes of a drawing depend on the one before it, but must not depend on the number of
+/// threads.
 void write_files(const StudyAnalysis& study, const StudyComparison& comparison,
                  const std::vector<Section>& sections, const fs::path& directory,
                  const Parallel& parallel) {

@@ -14,9 +14,10 @@ namespace montecarta::analysis {
 enum class ExistingReport { refuse, replace };
 
 struct ReportOptions {
-  double level = kUsualLevel;        ///< of the NEES bounds
-  std::optional<double> within;      ///< margin of consistent cells; default: that of the study
-  std::optional<std::uint64_t> run;  ///< run that is drawn and replayed; default: first complete
+  double level = kUsualLevel;    ///< level of NEES bounds and tests
+  std::optional<double> within;  ///< margin of consistent ratios; default: that of the study
+  /// Number of the run that is drawn and replayed; default: chosen_run().
+  std::optional<std::uint64_t> run;
   ExistingReport existing = ExistingReport::refuse;
   const Parallel* parallel = &Parallel::serial();
 };

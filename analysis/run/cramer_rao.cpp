@@ -19,8 +19,8 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// The step, in the vehicle's frame, that leads from one pose to another if it is taken `steps`
-/// times: turned about as it goes, it advances by the sum of exp(i k turn).
+/// The step in the vehicle's frame that leads from one pose to another if it is taken `steps`
+/// times. Since every step also turns, it advances by the sum of exp(i k turn).
 BodyStep<double> equal_steps(const Pose& from, const Pose& to, std::size_t steps) {
   const Eigen::Vector3d change = boxminus(to, from);
   const double turn = change(2) / static_cast<double>(steps);
@@ -45,14 +45,15 @@ std::vector<JointBound::SeenLandmark> seen_from(const Pose& pose, const Simulate
                                                 std::span<const Eigen::Vector2d> landmarks) {
   std::vector<JointBound::SeenLandmark> seen;
   world.view.look(pose, landmarks, [&](const InView& one) {
-    if (one.range < kLeastDistance) return;  // nothing with a derivative
+    if (one.range < kLeastDistance) return;  // the range has no derivative
     const Eigen::Vector2d& at = landmarks[one.landmark];
     seen.push_back({one.landmark, {at.x(), at.y()}});
   });
   return seen;
 }
 
-/// Rows with the control steps between them: each step one row, or each scan.
+/// The rows of the true path, still without poses, with the control steps between them: a row for
+/// each step, or for each scan.
 TruePath steps_of(const ResultFile& file) {
   TruePath path{file.description().start, {}, {}, {}, {}, file.scan_rows()};
   const std::vector<double>& times = file.times();
@@ -78,7 +79,7 @@ void read_rows(const ResultFile& file, std::size_t run, TruePath& path) {
   }
 }
 
-/// The first runs that have a path, as many as are wanted.
+/// Indices of the first runs that have a path, at most `wanted`.
 std::vector<std::size_t> first_runs(const ResultFile& file, std::size_t wanted) {
   std::vector<bool> complete(file.runs().size());
   for (const StoredCell& cell : file.cells()) {
@@ -99,7 +100,7 @@ void add(const std::vector<double>& values, std::vector<double>& sums) {
   for (std::size_t s = 0; s < sums.size(); ++s) sums[s] += values[s];
 }
 
-/// The root of the mean of squares, in the order of the runs.
+/// The root of the mean of `squares`, added in the order of the runs.
 CramerRaoBound root_mean(const std::vector<CramerRaoBound>& squares) {
   CramerRaoBound bound;
   bound.runs = squares.size();
@@ -126,7 +127,7 @@ CramerRaoBound none_for(const std::string& reason) {
 }  // namespace
 
 CramerRaoBound squared_bound(const SimulatedWorld& world, const TruePath& path) {
-  // A detection that may be missed brings its information times the chance that it is there.
+  // The information of a detection that may be missed counts with the probability of the detection.
   const Eigen::Vector2d observation_variance = world.sigma_observation.cwiseAbs2() / world.detected;
   JointBound joint(path.landmarks.size(), world.vehicle, world.control_noise, observation_variance,
                    world.sensor);

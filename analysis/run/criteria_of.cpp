@@ -16,7 +16,8 @@ bool says(const ResultFile& file, const char* setting, const char* value) {
   return std::ranges::count(file.scenario(), TextPairs::value_type{setting, value}) > 0;
 }
 
-/// Only then are estimates drawn as filters believe; else no filter can be calibrated.
+/// Returns whether filters believe the noise that is simulated; only then can a filter be
+/// calibrated.
 bool noise_is_matched(const ResultFile& file) {
   return file.has_truth() && says(file, "noise", "matched");
 }
@@ -38,8 +39,8 @@ bool are_true_headings_the_same(const ResultFile& file) {
   return true;
 }
 
-/// The scenario tells how the truth arises, even in a shard of one run. Files whose scenario does
-/// not, such as those of imported estimates, have all of their runs.
+/// The scenario says how the truth is simulated, even in a shard of one run. Files whose scenario
+/// does not, such as those of imported estimates, have all of their runs.
 ErrorFrame error_frame_of(const ResultFile& file) {
   if (noise_is_matched(file)) return ErrorFrame::of_estimate;
   const bool is_same = says(file, "noise", "measured-control") || are_true_headings_the_same(file);

@@ -6,7 +6,7 @@
 
 namespace montecarta::analysis {
 
-/// The criteria by which a file, which must outlive them, is judged at `level`.
+/// The criteria by which `file` is judged at `level`. The file must outlive them.
 RunCriteria criteria_of(const ResultFile& file, double level, double within = kUsualMargin);
 
 }  // namespace montecarta::analysis

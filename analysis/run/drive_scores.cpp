@@ -26,11 +26,11 @@ using BeliefMatrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 /// Covariance of the pose after a scan, as the filter reports it.
 struct ScanBelief {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  double inverse_freedom = 0.0;  ///< 1 / degrees of freedom of that covariance; 0: it is exact
+  double inverse_freedom = 0.0;  ///< 1 / degrees of freedom of that covariance; 0 if it is exact
   bool is_known = true;
 };
 
-/// Beliefs of all scans, and their means row by row.
+/// {scan} Beliefs of all scans, and their means row by row.
 struct ScanBeliefs {
   std::vector<double> mean;  ///< {scan, 3} [m, m, rad]
   std::vector<ScanBelief> beliefs;
@@ -66,7 +66,7 @@ ScanBeliefs beliefs_of(const RunRows& rows, std::size_t particles, std::size_t s
   return all;
 }
 
-/// At the start the pose is known exactly.
+/// Interpolates the belief at a place; the pose at the start is known exactly.
 ScanBelief belief_between(const std::vector<ScanBelief>& scans,
                           const PathAtFixes::FixPlace& place) {
   const ScanBelief& after = scans[place.next];
@@ -86,7 +86,8 @@ double on_chi_square_scale(double nees, const Eigen::MatrixXd& total, const Eige
   const Eigen::MatrixXd share = total.llt().solve(own);
   const double of_one = (share * share).trace() + share.trace() * share.trace();
   const double freedom = (d + d * d) / (inverse_freedom * of_one);
-  constexpr double kExactMean = 1e300;  // the covariance is already that of the mean's error
+  // Number of draws: the covariance is already that of the mean's error.
+  constexpr double kExactMean = 1e300;
   return sampler_scale(static_cast<std::size_t>(total.rows()))(nees, {kExactMean, freedom + 1.0});
 }
 
@@ -97,7 +98,7 @@ void add_whitened(const Eigen::VectorXd& error, VectorSeries& series) {
   }
 }
 
-/// The error in units of P + R; nullopt if that is not positive definite.
+/// The error in units of P + R; nullopt if P + R is not positive definite.
 std::optional<Eigen::VectorXd> in_units_of(const Eigen::VectorXd& error, const ScanBelief& belief,
                                            const Eigen::MatrixXd& own,
                                            const Eigen::MatrixXd& of_fix) {
@@ -162,7 +163,7 @@ constexpr std::size_t kFewestFixes = 2;
 
 constexpr double kSameWithin = 1e-3;  // [standard deviations of a fix]
 
-/// Largest squared length of {component}{sample}.
+/// Largest squared length of the samples of `series` {component}{sample}.
 double farthest_square(const VectorSeries& series) {
   double farthest = 0.0;
   for (std::size_t t = 0; t < series.front().size(); ++t) {

@@ -21,37 +21,40 @@ inline constexpr double kLongestScanGap = 1.0;
 
 /// Errors of one run at the fixes of a reference with known errors (STATISTICS 20).
 struct FixErrors {
-  /// {component}{fix judged} in units of P + R, the covariance of the filter plus that of the fix.
-  /// The sum of squares is the NEES; for particle filters it is on the scale of the chi-square.
+  /// {component}{fix judged} errors in units of P + R, the covariance of the filter plus that of
+  /// the fix. The sum of squares is the NEES; for particle filters it is on the scale of the
+  /// chi-square.
   VectorSeries whitened;
-  VectorSeries by_reference;  ///< likewise in units of R alone
-  std::vector<double> nees;   ///< {fix judged}
-  std::vector<double> times;  ///< [s] of the fixes judged
-  std::size_t in_gaps = 0;    ///< fixes left out: scans around lie farther apart
+  VectorSeries by_reference;  ///< {component}{fix judged} errors in units of R alone
+  std::vector<double> nees;   ///< {fix judged} NEES
+  std::vector<double> times;  ///< [s] {fix judged}
+  std::size_t in_gaps = 0;    ///< fixes left out: the scans around lie too far apart
   std::size_t undefined = 0;  ///< fixes left out: no finite covariance, or too few draws
 };
 
-/// Errors at `fixes`, which belong to the scans at `scan_times` [s], by the leading moments of
-/// `rows` of a filter with `particles` (0: none). Empty if no covariance is stored or if the
+/// Errors at `fixes` by the leading moments of `rows`, whose scans are at `scan_times` [s], of a
+/// filter with `particles` (0: not a particle filter). Empty if no covariance is stored or if the
 /// reference does not measure the block.
 FixErrors errors_at_fixes(const PathAtFixes& fixes, std::span<const double> scan_times,
                           const RunRows& rows, std::size_t particles, ErrorBlock block);
 
 /// Scores of one run on one drive by a reference with known errors (STATISTICS 20).
 struct DriveScores {
-  /// {ErrorBlock} NEES at the fixes; effective_samples 0 where the block is not measured.
+  /// {ErrorBlock} test of the NEES at the fixes; effective_samples is 0 if the block is not
+  /// measured.
   std::array<CorrelatedAverage, kErrorBlocks.size()> blocks;
-  /// {ErrorBlock} whitened errors; empty where the block is not measured.
+  /// {ErrorBlock} whitened errors; empty if the block is not measured.
   std::array<VectorSeries, kErrorBlocks.size()> errors;
   ErrorBlock leading = ErrorBlock::pose;  ///< the pose where there are headings, else the position
-  double median = kNaN;                   ///< of the leading NEES, over that of a chi-square
-  double seconds = 0.0;                   ///< from the first fix judged to the last
-  std::size_t fixes = 0;                  ///< judged
-  std::size_t in_gaps = 0;    ///< left out: scans around lie farther apart than kLongestScanGap
-  std::size_t undefined = 0;  ///< left out: no finite covariance, or too few draws
-  /// The estimate is the reference itself: at no fix it differs by a thousandth of the fix's sigma.
+  double median = kNaN;       ///< median of the leading NEES divided by that of a chi-square
+  double seconds = 0.0;       ///< [s] time from the first fix judged to the last
+  std::size_t fixes = 0;      ///< number of fixes judged
+  std::size_t in_gaps = 0;    ///< fixes left out: scans around are over kLongestScanGap apart
+  std::size_t undefined = 0;  ///< fixes left out: no finite covariance, or too few draws
+  /// Whether the estimate is the reference itself: it differs from every fix by less than a
+  /// thousandth of the fix's sigma.
   bool is_the_reference = false;
-  /// Errors are shown to be smaller than the fixes' own: their sigmas are too large, or the
+  /// Whether errors are shown to be smaller than the fixes' own: their sigmas are too large, or the
   /// reference was an input of the filter.
   bool is_below_reference = false;
 

@@ -8,18 +8,19 @@
 
 namespace montecarta::analysis {
 
-/// What estimates of another program are of; all cells of a file agree.
+/// The quantity that another program estimates, with the convention of its error. All cells of a
+/// file agree.
 struct ImportedState {
-  std::string state;       ///< "pose", "pose in space" or "vector"; empty: filters of ours
-  std::string convention;  ///< of the error: "world", "body" or "right-invariant"
+  std::string state;  ///< "pose", "pose in space" or "vector"; empty for filters of this program
+  std::string convention;  ///< convention of the error: "world", "body" or "right-invariant"
   std::vector<std::string> components = {"x", "y", "heading"};
   std::vector<std::string> units = {"m", "m", "rad"};
 
   bool is_imported() const { return !state.empty(); }
 };
 
-/// The imported state by the settings of a cell, if 'montecarta judge' made the file; else the pose
-/// in the plane.
+/// The imported state from the settings of a cell if 'montecarta judge' made the file, else the
+/// pose in the plane.
 ImportedState imported_state(const StoredCell& cell);
 
 }  // namespace montecarta::analysis

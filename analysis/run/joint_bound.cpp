@@ -29,8 +29,8 @@ JointBound::JointBound(std::size_t landmarks, const Vehicle& vehicle,
   joint_.setZero(rows, rows);
 }
 
-/// P' = Fx P Fx' + Fu Q Fu'. The map waits for finish_motion(): Fx of several steps is again
-/// [1 0 a; 0 1 b; 0 0 1] with a and b their sums.
+/// P' = Fx P Fx' + Fu Q Fu'. The map is updated by finish_motion(): the product of Fx over several
+/// steps is again [1 0 a; 0 1 b; 0 0 1], where a and b are sums over the steps.
 Pose JointBound::move(const Pose& pose, const Control& control, double duration) {
   const auto step = linearised_move(pose, control, duration, vehicle_);
   const Eigen::Matrix3d F = pose_jacobian(step.jacobians);
@@ -136,7 +136,7 @@ double JointBound::mean_map_variance() const {
   double sum = 0.0, count = 0.0;
   for (Eigen::Index row = 3; row < size_; row += 2) {
     const double x = joint_(row, row), y = joint_(row + 1, row + 1);
-    if (x + y > 0.01 * kUnknown * kUnknown) continue;  // seen along one line
+    if (x + y > 0.01 * kUnknown * kUnknown) continue;  // all detections are along one line
     sum += x;
     sum += y;
     count += 1.0;

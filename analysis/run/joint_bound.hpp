@@ -23,23 +23,25 @@ namespace montecarta::analysis {
 /// is a kilometre. The pose is known exactly at the start.
 class JointBound {
  public:
-  /// Room for all `landmarks`; nothing is allocated later. `control_noise`: of the vehicle,
-  /// `observation_variance`: of the components of the sensor.
+  /// Makes room for all `landmarks`; nothing is allocated later. `control_noise` is that of the
+  /// vehicle, `observation_variance` that of the components of the sensor.
   JointBound(std::size_t landmarks, const Vehicle& vehicle, const ControlNoise& control_noise,
              const Eigen::Vector2d& observation_variance, const Sensor& sensor = {});
 
-  /// One control step from the true `pose`; returns the pose after it.
+  /// Propagates the bound through one control step from the true `pose`; returns the pose after it.
   Pose move(const Pose& pose, const Control& control, double duration);
-  /// A scan from the true `pose` that detects `landmarks`, true positions with their identities.
-  /// False if the noise is too small for the computation; the bound is unusable then.
+
+  /// A detected landmark with its true position [m].
   struct SeenLandmark {
     std::size_t identity = 0;
     Point point;
   };
+  /// Updates the bound with a scan from the true `pose` that detects `landmarks`. Returns false if
+  /// the noise is too small for the computation; the bound is unusable then.
   [[nodiscard]] bool scan(const Pose& pose, std::span<const SeenLandmark> landmarks);
 
   const Eigen::Matrix3d& pose() const { return pose_; }
-  /// [m^2] Mean squared position error over the landmarks that the detections locate; NaN if there
+  /// [m^2] Mean squared position error of the landmarks that the detections locate; NaN if there
   /// are none.
   double mean_map_variance() const;
 
@@ -55,12 +57,12 @@ class JointBound {
   ControlNoise control_noise_;
   Eigen::Vector2d observation_variance_;
   Sensor sensor_;
-  Eigen::Matrix3d pose_ = Eigen::Matrix3d::Zero();  ///< symmetric
-  double pending_x_heading_ = 0.0;                  ///< [m/rad] of Fx since the last scan
-  double pending_y_heading_ = 0.0;                  ///< [m/rad]
-  Eigen::MatrixXd joint_;                           ///< lower triangle; its pose block is in pose_
-  Eigen::Index size_ = 3;                           ///< rows in use
-  std::vector<Eigen::Index> row_;                   ///< of each landmark; 0: never seen
+  Eigen::Matrix3d pose_ = Eigen::Matrix3d::Zero();  ///< covariance of the pose, symmetric
+  double pending_x_heading_ = 0.0;                  ///< [m/rad] element of Fx since the last scan
+  double pending_y_heading_ = 0.0;                  ///< [m/rad] element of Fx since the last scan
+  Eigen::MatrixXd joint_;  ///< lower triangle of the joint covariance; its pose block is in pose_
+  Eigen::Index size_ = 3;  ///< number of rows in use
+  std::vector<Eigen::Index> row_;  ///< {landmark} its first row; 0 if never seen
 };
 
 }  // namespace montecarta::analysis

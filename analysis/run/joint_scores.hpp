@@ -12,15 +12,14 @@
 
 namespace montecarta::analysis {
 
-/// Normalised error squared of pose and map together, of one run at one scan.
+/// Normalised estimation error squared of pose and map together, of one run at one scan.
 struct JointScore {
-  double nees = 0.0;          ///< NaN where error or covariance is not finite, or P not positive
-                              ///< definite
+  double nees = 0.0;  ///< NaN if error or covariance is not finite, or P is not positive definite
   std::size_t dimension = 0;  ///< 3 + 2 x landmarks in the map
 };
 
-/// A JointScore for each row of `rows`, which are taken at these scans. `truth` {scan, 3}
-/// [m, m, rad]; `landmarks` [m] by identity.
+/// Scores {row} of `rows`, which are stored at these `scans`. `truth` {scan, 3} [m, m, rad];
+/// `landmarks` [m] by identity.
 std::vector<JointScore> joint_scores(const JointRows& rows, std::span<const std::uint32_t> scans,
                                      std::span<const double> truth,
                                      std::span<const Eigen::Vector2d> landmarks);

@@ -47,7 +47,7 @@ struct LineageWalker::Sums {
   SummaryOf coalescence, coalesced, variance, squared_error;
 };
 
-/// With `ancestor_` telling the families of the particles of scan `s`.
+/// Variance by families of the particles of scan `s`, which `ancestor_` names.
 double LineageWalker::family_variance(const RunRows& rows, std::size_t s) {
   const std::size_t particles = ancestor_.size();
   const double* const pose = rows.particle_pose.data() + 3 * particles * s;
@@ -66,7 +66,7 @@ double LineageWalker::family_variance(const RunRows& rows, std::size_t s) {
   return std::inner_product(families_.begin(), families_.end(), families_.begin(), 0.0);
 }
 
-/// Walks from resampling to resampling; between them everyone is their own parent.
+/// Walks from resampling to resampling; between them every particle is its own parent.
 void LineageWalker::walk_from(std::size_t s, const RunRows& rows,
                               std::span<const std::size_t> resampled, std::span<const double> times,
                               Sums& sums) {
@@ -121,8 +121,8 @@ Lineages LineageWalker::walk(const RunRows& rows, std::span<const std::size_t> r
   return lineages;
 }
 
-/// Walks from resampling to resampling, until one ancestor is left; between them everyone is their
-/// own parent.
+/// Walks from resampling to resampling until one ancestor is left; between them every particle is
+/// its own parent.
 void DiversityCounter::walk_back(std::size_t first, std::size_t s) {
   path_.clear();
   set_.start(particles_);

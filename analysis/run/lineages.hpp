@@ -13,17 +13,17 @@
 
 namespace montecarta::analysis {
 
-/// Ancestors of all particles of a scan, each once, while a genealogy is walked back. Keeps its
-/// memory from walk to walk.
+/// The distinct ancestors of all particles of a scan, while a genealogy is walked back. The object
+/// keeps its memory from walk to walk.
 class AncestorSet {
  public:
-  /// Starts with all particles.
+  /// Makes all particles the members.
   void start(std::size_t particles) {
     stamp_.resize(std::max(stamp_.size(), particles));
     members_.resize(particles);
     std::iota(members_.begin(), members_.end(), 0u);
   }
-  /// `indices` below the number of particles of the last start(), each once.
+  /// Makes `indices` the members: each once, and below the number of particles of the last start().
   void assign(std::span<const std::uint32_t> indices) {
     start(indices.size());
     step_back(indices);
@@ -45,12 +45,13 @@ class AncestorSet {
 
  private:
   std::vector<std::uint32_t> members_;
-  std::vector<std::uint64_t> stamp_;  ///< {index} number of the last set that it was in
-  std::uint64_t now_ = 0;             ///< stamp of the set being made
+  std::vector<std::uint64_t> stamp_;  ///< {index} number of the last set that had this member
+  std::uint64_t now_ = 0;             ///< stamp of the set that is being made
 };
 
-/// {scan} 1 + the latest scan until then in which a particle had another parent than itself; 0 if
-/// there is none. `ancestor` {scan, particle}. Throws RunError if a parent does not exist.
+/// Fills `resampled` {scan} with 1 + the latest scan, up to this one, in which a particle had
+/// another parent than itself; 0 if there is none. `ancestor` {scan, particle}. Throws RunError if
+/// a parent does not exist.
 void find_resamplings(std::span<const std::uint32_t> ancestor, std::size_t particles,
                       std::vector<std::size_t>& resampled);
 
@@ -59,26 +60,27 @@ inline constexpr std::array kLineageLags = {1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100
 
 /// The ancestry of one run, seen from up to 32 of its scans.
 struct Lineages {
-  /// {lag} number of distinct ancestors of that age, mean over scans that are late enough; NaN if
-  /// there are none.
+  /// {lag} number of distinct ancestors of that age, mean over the scans that are late enough; NaN
+  /// if there are none.
   std::array<double, kLineageLags.size()> ancestors{};
-  /// [s] back to the youngest common ancestor of all particles, mean over the scans that have one.
+  /// [s] age of the youngest common ancestor of all particles, mean over the scans that have one.
   double coalescence = 0.0;
-  double coalesced_share = 0.0;  ///< of the scans: all particles have one common ancestor
+  /// Share of the scans at which all particles have one common ancestor.
+  double coalesced_share = 0.0;
   /// [m^2] Variance of the estimated position that comes from the small number of particles, mean
   /// over scans; NaN if particles are not stored. It is estimated from the differences between
   /// families, the descendants of one ancestor kDiversityLag ago (Lee and Whiteley 2018, eq. (8),
   /// with the fixed lag of Olsson and Douc 2019).
   double monte_carlo_variance = 0.0;
-  /// [m^2] squared position error at the same scans, mean.
+  /// [m^2] mean squared position error at the same scans.
   double squared_error = 0.0;
 };
 
-/// Follows a genealogy back from several scans. Keeps its memory from run to run.
+/// Follows a genealogy back from several scans. The object keeps its memory from run to run.
 class LineageWalker {
  public:
-  /// `rows` with ancestors; `resampled` {scan} by find_resamplings(); `squared_position` {scan}
-  /// [m^2] may be empty; `times` [s].
+  /// Walks back through the ancestors in `rows`. `resampled` {scan} is that of find_resamplings();
+  /// `squared_position` {scan} [m^2] may be empty; `times` [s] of the scans.
   Lineages walk(const RunRows& rows, std::span<const std::size_t> resampled,
                 std::span<const double> times, std::span<const double> squared_position);
 
@@ -89,28 +91,29 @@ class LineageWalker {
   double family_variance(const RunRows& rows, std::size_t s);
 
   AncestorSet set_;
-  std::vector<std::uint32_t> ancestor_;  ///< {particle} of the scan where the walk began
+  std::vector<std::uint32_t> ancestor_;  ///< {particle of the first scan of the walk} ancestor
   std::vector<double> families_;         ///< {ancestor, 2} weighted deviation of its descendants
 };
 
-/// Age of the ancestors in Diversity::lag [s] (STATISTICS 14).
+/// [s] Age of the ancestors in Diversity::lag (STATISTICS 14).
 inline constexpr double kDiversityLag = 10.0;
 
-/// Distinct ancestors of the particles of every scan of one run.
+/// {scan} Numbers of distinct ancestors of the particles of one run.
 struct Diversity {
-  std::vector<std::uint32_t> last_resampling;  ///< parents in the last resampling before the scan
-  std::vector<std::uint32_t> lag;              ///< ancestors kDiversityLag earlier, or at the start
-  std::vector<std::uint32_t> root;             ///< ancestors at the start; never grows
+  /// Number of parents in the last resampling before the scan.
+  std::vector<std::uint32_t> last_resampling;
+  std::vector<std::uint32_t> lag;   ///< number of ancestors kDiversityLag earlier, or at the start
+  std::vector<std::uint32_t> root;  ///< number of ancestors at the start; never grows
 };
 
-/// Counts ancestors along a genealogy. Keeps its memory from run to run.
+/// Counts ancestors along a genealogy. The object keeps its memory from run to run.
 class DiversityCounter {
  public:
-  /// `ancestor` {scan, particle}: index, among the particles one scan ago, of the parent. `times`
-  /// [s] of the scans.
+  /// Counts the ancestors of one run. `ancestor` {scan, particle} is the index of the parent among
+  /// the particles one scan ago; `times` [s] of the scans.
   const Diversity& count(std::span<const std::uint32_t> ancestor, std::size_t particles,
                          std::span<const double> times);
-  /// find_resamplings() of the run that was counted last.
+  /// {scan} result of find_resamplings() for the run that was counted last.
   std::span<const std::size_t> resampled() const { return resampled_; }
 
  private:
@@ -124,15 +127,15 @@ class DiversityCounter {
   Row parents(std::size_t s) const { return ancestor_.subspan(s * particles_, particles_); }
   void count_back(std::span<const double> times);
   void count_root();
-  /// Fills `path_` with the resamplings from scan `s`, which is one, back to scan `first`.
+  /// Fills `path_` with the resamplings from scan `s`, at which there is one, back to scan `first`.
   void walk_back(std::size_t first, std::size_t s);
 
   Row ancestor_;
   std::size_t particles_ = 0;
   Diversity result_;
-  std::vector<std::size_t> resampled_;   ///< find_resamplings()
-  AncestorSet set_;                      ///< being walked back
-  std::vector<ResamplingStep> path_;     ///< of the last resampling, the latest first
+  std::vector<std::size_t> resampled_;   ///< {scan} result of find_resamplings()
+  AncestorSet set_;                      ///< ancestors during the walk back
+  std::vector<ResamplingStep> path_;     ///< resamplings back from the last one, the latest first
   std::vector<std::uint32_t> root_;      ///< {particle} ancestor at the start
   std::vector<std::uint32_t> previous_;  ///< root_ one resampling earlier
 };

@@ -13,7 +13,7 @@
 namespace montecarta::analysis {
 namespace {
 
-/// Rows and columns count from 1. Prices keep all distances positive.
+/// State of the assignment. Rows and columns count from 1. Prices keep all distances positive.
 struct Assignment {
   explicit Assignment(const Eigen::MatrixXd& costs)
       : cost(costs),
@@ -26,8 +26,8 @@ struct Assignment {
            row_price[row] - column_price[column];
   }
 
-  /// Takes the shortest way from the row, which begins in column 0, to a free column, and moves the
-  /// rows on this way along it.
+  /// Finds the shortest path from the row, which begins in column 0, to a free column, and moves
+  /// the rows on this path along it.
   void add(std::size_t row) {
     std::vector<double> distance(row_of.size(), std::numeric_limits<double>::infinity());
     std::vector<std::size_t> before(row_of.size());
@@ -56,25 +56,26 @@ struct Assignment {
 
   const Eigen::MatrixXd& cost;
   std::vector<double> row_price, column_price;
-  std::vector<std::size_t> row_of;  ///< {column} 0: free
+  std::vector<std::size_t> row_of;  ///< {column} its row; 0 if it is free
 };
 
 using PointSpan = std::span<const Eigen::Vector2d>;
 
-/// Squared distances, at most the cutoff's: no worse than to leave both alone.
+/// Squared distances, cut to the squared cutoff: such a pair is no better than two landmarks
+/// without a partner.
 Eigen::MatrixXd costs(PointSpan few, PointSpan many, double cutoff) {
   Eigen::MatrixXd cost(few.size(), many.size());
   for (Eigen::Index i = 0; i < cost.rows(); ++i) {
     for (Eigen::Index j = 0; j < cost.cols(); ++j) {
       const double squared =
           (few[static_cast<std::size_t>(i)] - many[static_cast<std::size_t>(j)]).squaredNorm();
-      cost(i, j) = squared < cutoff * cutoff ? squared : cutoff * cutoff;  // NaN is far
+      cost(i, j) = squared < cutoff * cutoff ? squared : cutoff * cutoff;  // NaN becomes the cutoff
     }
   }
   return cost;
 }
 
-/// The landmarks that came into view on the way.
+/// The landmarks that came into view along `path`.
 std::vector<Eigen::Vector2d> seen_along(std::span<const double> path, const MapCriteria& criteria,
                                         std::span<const Eigen::Vector2d> landmarks) {
   if (!criteria.view) return {landmarks.begin(), landmarks.end()};

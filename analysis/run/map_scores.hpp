@@ -15,9 +15,9 @@
 
 namespace montecarta::analysis {
 
-/// Column of each row in the assignment of least total cost. `cost` is finite, with no more rows
-/// than columns. Shortest augmenting paths (Jonker and Volgenant 1987): at most cubic, and
-/// quadratic if most rows have a cheapest column of their own, as in a good map.
+/// {row} Column in the assignment of least total cost. `cost` is finite, with no more rows than
+/// columns. The method is that of shortest augmenting paths (Jonker and Volgenant 1987): at most
+/// cubic, and quadratic if most rows have a cheapest column of their own, as in a good map.
 std::vector<std::size_t> cheapest_assignment(const Eigen::MatrixXd& cost);
 
 /// A landmark farther than this [m] from its true position counts as missed and spurious.
@@ -29,8 +29,8 @@ inline constexpr double kGospaCutoff = 5.0;
 struct Gospa {
   double distance = 0.0;      ///< [m]
   double localisation = 0.0;  ///< [m] root of the sum of squared errors of the pairs
-  double missed = 0.0;        ///< [1] true landmarks without a partner
-  double spurious = 0.0;      ///< [1] landmarks of the map without a partner
+  double missed = 0.0;        ///< [1] number of true landmarks without a partner
+  double spurious = 0.0;      ///< [1] number of landmarks of the map without a partner
 };
 
 /// Pairs `map` [m] and `truth` [m] at the least distance. A point that is not finite has no
@@ -40,45 +40,46 @@ Gospa gospa(std::span<const Eigen::Vector2d> map, std::span<const Eigen::Vector2
 
 /// Facts by which the final maps of a study are judged.
 struct MapCriteria {
-  bool known = false;               ///< whether the true positions are known
-  std::optional<FieldOfView> view;  ///< of the sensor; without it all count as seen
-  bool identities_known = false;    ///< rows of a map are identities of the world
+  bool known = false;  ///< whether the true positions are known
+  /// Field of view of the sensor; without it all landmarks count as seen.
+  std::optional<FieldOfView> view;
+  bool identities_known = false;  ///< whether rows of a map are identities of the world
 };
 
-/// One landmark of one run; NaN where it is not in the map.
+/// Scores of one landmark in one run; NaN where it is not in the map.
 struct LandmarkScore {
   double squared_error = kNaN;  ///< [m^2]
-  double nees = kNaN;           ///< [1] of two components
+  double nees = kNaN;           ///< [1] NEES of two components
   bool in_map = false;
 };
 
-/// The final map of a run against the true landmarks that came into view in it.
+/// Scores of the final map of a run against the true landmarks that came into view during the run.
 struct MapScores {
   Gospa gospa;
-  double rms = kNaN;                     ///< [m] over the landmarks in the map;
-                                         ///< by identity: NaN where unknown
-  double nees = kNaN;                    ///< [1] mean over those with a NEES
-  std::size_t undefined = 0;             ///< landmarks in the map that have no NEES
+  double rms = kNaN;          ///< [m] over the landmarks in the map; NaN without identities
+  double nees = kNaN;         ///< [1] mean NEES of the landmarks that have one
+  std::size_t undefined = 0;  ///< number of landmarks in the map that have no NEES
   std::vector<LandmarkScore> landmarks;  ///< {landmark}; empty where identities are unknown
 };
 
-/// `landmarks`: true positions [m]. `path`: true poses at scans {scan, 3} [m, m, rad].
+/// Scores of `map`. `landmarks` are the true positions [m], `path` the true poses at scans {scan,
+/// 3} [m, m, rad].
 MapScores map_scores(const FinalMap& map, const MapCriteria& criteria,
                      std::span<const Eigen::Vector2d> landmarks, std::span<const double> path);
 
 /// A surveyed beacon is found where an aligned landmark lies within this distance [m].
 inline constexpr double kFoundWithin = 1.0;
 
-/// The final map of a run compared with surveyed beacons. NaN if no beacon was found.
+/// Scores of the final map of a run against surveyed beacons. NaN if no beacon was found.
 struct BeaconScores {
-  double found = 0.0;         ///< [1] beacons
-  double rms = kNaN;          ///< [m] of those found
-  double aligned_rms = kNaN;  ///< [m] of those found, aligned
+  double found = 0.0;         ///< [1] number of beacons found
+  double rms = kNaN;          ///< [m] RMS distance of the beacons found
+  double aligned_rms = kNaN;  ///< [m] RMS distance of the beacons found, after alignment
 };
 
 /// Pairs each beacon [m] with the nearest landmark of `map` [m] after `alignment`, the motion that
 /// aligns the path with its reference, because the start of a drive is not known exactly. A
-/// landmark counts for one beacon only, the nearer pair first.
+/// landmark counts for one beacon only; the nearest pairs are formed first.
 BeaconScores beacon_scores(std::span<const Eigen::Vector2d> map,
                            std::span<const Eigen::Vector2d> beacons, const RigidMotion& alignment);
 

@@ -38,7 +38,7 @@ void MeasuredRun::measure(const RunCriteria& criteria, std::size_t particles) {
   for (const PathAtFixes& fixes : own != nullptr ? own->judged_fixes : criteria.judged_fixes) {
     drives.push_back(drive_scores(fixes, times, rows, particles, criteria.level));
     if (own == nullptr)
-      drives.back().errors = {};  // one drive needs none, and there may be many runs
+      drives.back().errors = {};  // one common drive needs no errors, and there may be many runs
   }
   map.reset();
   if (criteria.map.known && rows.final_map) {

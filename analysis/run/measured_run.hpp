@@ -18,19 +18,21 @@
 
 namespace montecarta::analysis {
 
-/// One run being read and measured while others are. Keeps its memory from run to run.
+/// One run that is read and measured. The object keeps its memory from run to run; each thread has
+/// its own.
 struct MeasuredRun {
   RunRows rows;
-  std::span<const double> times;  ///< [s] of its scans
+  std::span<const double> times;  ///< [s] {scan}
   RunMetrics metrics;
   std::vector<ReferenceRun> references;
-  std::vector<DriveScores> drives;      ///< by each of RunCriteria::judged_fixes
-  std::optional<BeaconScores> beacons;  ///< where the final map is stored and beacons are known
-  std::optional<MapScores> map;         ///< where it is stored and the world is known
-  std::vector<JointScore> joint;        ///< where joint estimates are stored
-  bool has_identities = false;          ///< whether anybody knows which landmark is which
-  RunPits pits;                         ///< of errors and NEES
-  ProperScores proper;                  ///< of a known truth
+  std::vector<DriveScores> drives;  ///< {RunCriteria::judged_fixes} scores by that reference
+  /// Present if the final map is stored and beacons are known.
+  std::optional<BeaconScores> beacons;
+  std::optional<MapScores> map;   ///< present if the final map is stored and the world is known
+  std::vector<JointScore> joint;  ///< {joint scan} scores; empty if no joint estimates are stored
+  bool has_identities = false;    ///< whether it is known which landmark is which
+  RunPits pits;                   ///< transforms of errors and NEES
+  ProperScores proper;            ///< NaN without a known truth
 
   /// Measures `rows` of a complete run.
   void measure(const RunCriteria& criteria, std::size_t particles);

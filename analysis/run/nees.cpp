@@ -30,12 +30,13 @@ EffectiveDraws draws_at(const RunRows& rows, std::size_t particles, std::size_t 
 
 namespace {
 
-constexpr double kLeastPivot = 1e-12;       // also the least eigenvalue that counts in the rank
-constexpr double kMostNegative = -1e-9;     // eigenvalue that rounding may leave
-constexpr double kRounding = 1e-9;          // error of a component that is known exactly
-constexpr double kFarthestOutside = 10.0;   // standard deviations; second-order effects are smaller
-constexpr double kLargestAsymmetry = 1e-6;  // of the deviations: as six printed digits leave it
-constexpr double kLeastTail = 1e-6;         // beyond, a consistent filter hardly ever is
+constexpr double kLeastPivot = 1e-12;  // least pivot, and least eigenvalue that counts in the rank
+constexpr double kMostNegative = -1e-9;  // least eigenvalue that rounding explains
+// Largest error that rounding explains in a component known exactly.
+constexpr double kRounding = 1e-9;
+constexpr double kFarthestOutside = 10.0;  // [standard deviations] second-order effects are smaller
+constexpr double kLargestAsymmetry = 1e-6;  // [deviations] what six printed digits leave
+constexpr double kLeastTail = 1e-6;         // tail in which a consistent filter hardly ever lies
 const Eigen::Vector3d kLeastDeviation{1e-9, 1e-9, 1e-10};
 
 template <int D>
@@ -49,12 +50,12 @@ double capped(double nees) { return nees <= kLargestNees ? nees : kLargestNees; 
 template <int D>
 struct Whitened {
   Vec<D> error;      ///< L^-1 e with P = L L'
-  Vec<D> deviation;  ///< of each component
+  Vec<D> deviation;  ///< {component} standard deviation
   double determinant;
 };
 
-/// By Cholesky of the correlation matrix, so that the pivots are independent of units; nullopt if P
-/// is singular.
+/// Whitens by Cholesky of the correlation matrix, so that the pivots are independent of units;
+/// nullopt if P is singular.
 template <int D>
 std::optional<Whitened<D>> whitened(const Vec<D>& error, const Mat<D>& covariance,
                                     const Vec<D>& least_variance) {
@@ -98,7 +99,8 @@ std::optional<double> quadratic_form(const Vec<D>& error, const Mat<D>& covarian
   return sum;
 }
 
-/// Nullopt also if a number is not finite; there is no branch for each of them.
+/// The whitened error; nullopt if P is singular or a number is not finite. There is no branch for
+/// each number.
 std::optional<Whitened<3>> whitened_pose(const Eigen::Vector3d& error,
                                          const Eigen::Matrix3d& covariance) {
   const bool is_finite = (error - error).sum() + (covariance - covariance).sum() == 0.0;
@@ -108,8 +110,8 @@ std::optional<Whitened<3>> whitened_pose(const Eigen::Vector3d& error,
 
 constexpr Nees kUnusableSample = {kNaN, Nees::kUnusable};
 
-/// The components with a variance above the least; nullopt if a variance is negative, or a
-/// covariance larger than two variances allow.
+/// Indices of the components with a variance above the least one; nullopt if a variance is
+/// negative, or if a covariance is larger than its two variances allow.
 std::optional<std::vector<Eigen::Index>> open_components(const Eigen::MatrixXd& P,
                                                          const Eigen::VectorXd& least_variance) {
   std::vector<Eigen::Index> found;
@@ -128,7 +130,7 @@ std::optional<std::vector<Eigen::Index>> open_components(const Eigen::MatrixXd& 
   return found;
 }
 
-/// NEES in the range of a singular P, of the components that are not known exactly. An error that
+/// NEES in the range of a singular P, for the components that are not known exactly. An error that
 /// is farther outside the range than second-order effects explain has the largest NEES.
 Nees nees_in_range(const Eigen::VectorXd& error, const Eigen::MatrixXd& P,
                    const Eigen::VectorXd& least_variance) {

@@ -13,36 +13,38 @@
 
 namespace montecarta::analysis {
 
-/// The fixes of a reference that lie within a drive's time span, and where each lies between the
-/// rows of an estimated path. The same for all runs of all cells; any number of threads may use it.
+/// The fixes of a reference that lie within a drive's time span, and the place of each between the
+/// rows of an estimated path. It is the same for all runs of all cells; any number of threads may
+/// use it.
 class PathAtFixes {
  public:
-  /// `times` [s] of a path's rows, increasing; the vehicle stands at `start` at time 0. Fixes
-  /// before that or behind the last row are not used.
+  /// Takes the `times` [s] of a path's rows, increasing; the vehicle stands at `start` at time 0.
+  /// Fixes before time 0 or after the last row are not used.
   PathAtFixes(const ReferencePath& reference, std::span<const double> times, const Pose& start);
 
   const std::string& name() const { return used_.name; }
-  /// [s] of each fix that is used.
+  /// [s] {fix used} time.
   const std::vector<double>& times() const { return used_.time; }
   /// [m]
   const std::vector<Eigen::Vector2d>& positions() const { return used_.position; }
-  /// [rad]; empty where the reference has none.
+  /// [rad] {fix used} heading; empty where the reference has none.
   const std::vector<double>& headings() const { return used_.heading; }
 
-  /// (m, m, rad)^2 of each fix; empty if unknown.
+  /// {fix used} covariance, (m, m, rad)^2; empty if unknown.
   const std::vector<Eigen::Matrix3d>& covariances() const { return used_.covariance; }
 
-  /// Between row `next` - 1 (the start for 0) and row `next`.
+  /// A place between row `next` - 1 (the start if `next` is 0) and row `next`.
   struct FixPlace {
     std::size_t next = 0;
-    double share = 0.0;  ///< of the way, in [0, 1]
+    double share = 0.0;  ///< share of the way to row `next`, in [0, 1]
   };
-  /// The place of each fix.
+  /// {fix used} place on the path.
   const std::vector<FixPlace>& places() const { return places_; }
-  /// Whether the start was taken from a fix: whether the two agree to a micrometre.
+  /// Returns whether the start was taken from a fix: whether the two agree to a micrometre.
   bool has_start() const;
 
-  /// `path` {row, 3} [m, m, rad], linearly in time at every fix; the heading turns the shorter way.
+  /// Interpolates `path` {row, 3} [m, m, rad] linearly in time at every fix; the heading turns the
+  /// shorter way.
   std::vector<Pose> interpolate(std::span<const double> path) const;
 
  private:

@@ -18,7 +18,8 @@ double wrapped(std::size_t component, double difference) {
   return component == 2 ? wrap(difference) : difference;
 }
 
-/// Gaussian probability of less than `deviation` = truth - mean; NaN without a positive variance.
+/// Gaussian probability of a value below `deviation` = truth - mean; NaN without a positive
+/// variance.
 double gaussian_share(double deviation, double variance) {
   if (!(variance > 0.0) || !std::isfinite(variance) || !std::isfinite(deviation)) return kNaN;
   return 0.5 * std::erfc(-deviation / std::sqrt(2.0 * variance));
@@ -34,8 +35,8 @@ RunPits::Components gaussian_pits(const std::vector<double>& truth, const Moment
   return pits;
 }
 
-/// The truth is one more draw (Hotelling's F of one component). NaN for three effective draws or
-/// fewer.
+/// Transforms by the law of the truth as one more draw (Hotelling's F of one component). NaN for
+/// three effective draws or fewer.
 RunPits::Components drawn_pits(const RunRows& rows, const EffectiveDraws& draws, std::size_t scan) {
   RunPits::Components pits{kNaN, kNaN, kNaN};
   const double E = draws.of_mean;
@@ -49,7 +50,7 @@ RunPits::Components drawn_pits(const RunRows& rows, const EffectiveDraws& draws,
   return pits;
 }
 
-/// Rank of the truth among the particles, smoothed: E draws of equal weight leave E + 1 gaps of
+/// Smoothed rank of the truth among the particles. E draws of equal weight leave E + 1 gaps of
 /// equal probability, and `within` spreads the truth evenly over its gap from run to run. For
 /// uneven weights E is the effective sample size.
 RunPits::Components rank_pits(const RunRows& rows, std::size_t scan, double within) {
@@ -85,7 +86,8 @@ std::array<double, 2> landmark_pits(const FinalMap& map, std::uint64_t run,
           gaussian_share(error.y(), map.covariance[l](1, 1))};
 }
 
-/// In (0, 1), evenly spread over any stretch of runs: multiples of the golden ratio.
+/// A number in (0, 1) that is evenly spread over any stretch of runs: multiples of the golden
+/// ratio.
 double evenly(std::uint64_t run) {
   const double golden = 0.6180339887498949 * (static_cast<double>(run) + 0.5);
   return golden - std::floor(golden);

@@ -13,10 +13,10 @@
 
 namespace montecarta::analysis {
 
-/// Number of parts of a run at the ends of which calibration is tested.
+/// Number of parts of a run; calibration is tested at the end of each.
 inline constexpr std::size_t kQuarters = 4;
 
-/// The scan that ends each quarter of a run of `scans` >= 1.
+/// {quarter} The last scan of each quarter of a run of `scans` >= 1.
 inline std::array<std::size_t, kQuarters> calibration_scans(std::size_t scans) {
   std::array<std::size_t, kQuarters> chosen{};
   for (std::size_t m = 0; m < kQuarters; ++m) {
@@ -27,16 +27,17 @@ inline std::array<std::size_t, kQuarters> calibration_scans(std::size_t scans) {
 }
 
 /// Probability integral transforms (PIT) of one run, uniform over runs if the filter is calibrated.
-/// NaN where not defined.
+/// A transform that is not defined is NaN.
 struct RunPits {
   using Components = std::array<double, 3>;  ///< x, y, heading in the map frame
-  /// By the Gaussian of the leading moments. Where a scan drew poses, it is Student's t with as
-  /// many effective draws about their mean.
+  /// {quarter} transforms of the pose by the Gaussian of the leading moments. At a scan that drew
+  /// poses, the law is Student's t with as many effective draws about their mean.
   std::array<Components, kQuarters> pose{};
-  std::array<Components, kQuarters> rank{};  ///< by the weighted particles
+  std::array<Components, kQuarters> rank{};  ///< {quarter} transforms by the weighted particles
   std::array<double, 2> landmark{};          ///< x, y of one landmark of the final map
-  std::array<double, kQuarters> nees{};      ///< of the leading NEES, by its chi-square law
-  /// Which of them are stored.
+  /// {quarter} transforms of the leading NEES by its chi-square law.
+  std::array<double, kQuarters> nees{};
+  /// Whether the data behind each transform are stored.
   bool has_pose = false, has_rank = false, has_landmark = false, has_nees = false;
   static constexpr auto members() {
     using Pits = RunPits;
@@ -45,14 +46,14 @@ struct RunPits {
   }
 };
 
-/// The transforms of errors in run number `run` with `particles` (0: none). `landmarks` [m] are the
-/// true positions by identity, empty if unknown. Every run gives one landmark, another one from run
-/// to run, because those of one map are correlated.
+/// The transforms of errors in run number `run` with `particles` (0: not a particle filter).
+/// `landmarks` [m] are the true positions by identity, empty if unknown. Every run gives one
+/// landmark, a different one from run to run, because the errors of one map are correlated.
 RunPits pits_of(const RunRows& rows, std::size_t particles, std::uint64_t run,
                 std::span<const Eigen::Vector2d> landmarks);
 
 /// Transforms of `nees` {scan} by the chi-square law of `dimension` degrees of freedom, at
-/// calibration_scans(). NaN of a value that is not finite.
+/// calibration_scans(). The transform of a value that is not finite is NaN.
 std::array<double, kQuarters> nees_pits(std::span<const double> nees, std::size_t dimension);
 
 }  // namespace montecarta::analysis

@@ -50,7 +50,7 @@ double energy_score(std::span<const double> pose, std::span<const double> log_we
       to_others += weight[j] * length(pose[3 * j] - x, pose[3 * j + 1] - y);
     sum += weight[i];
     distance += weight[i] * length(truth.x() - x, truth.y() - y);
-    pairs += weight[i] * to_others;  // each pair once: half of the expectation
+    pairs += weight[i] * to_others;  // each pair counts once, which gives half of the expectation
   }
   return distance / sum - pairs / (sum * sum);
 }

@@ -18,7 +18,7 @@ Eigen::Vector2d centre_of(std::span<const Eigen::Vector2d> points) {
 
 using Points = std::vector<Eigen::Vector2d>;
 
-/// Distances over fixes in single numbers [m].
+/// Summary of the distances over fixes [m].
 struct Distances {
   double rms, median, gated_rms, gated_share;
 };
@@ -66,7 +66,7 @@ double heading_rmse(const std::vector<Pose>& poses, const std::vector<double>& h
     const double error = boxminus({0.0, 0.0, headings[f]}, poses[f])(2);
     sum += error * error;
   }
-  return root_mean(sum, headings.size());  // NaN of none
+  return root_mean(sum, headings.size());  // NaN without headings
 }
 
 }  // namespace
@@ -81,7 +81,8 @@ RigidMotion rigid_alignment(std::span<const Eigen::Vector2d> from,
   RigidMotion motion;
   if (from.empty()) return motion;
   const Eigen::Vector2d centre = centre_of(from), target = centre_of(onto);
-  double along = 0.0, across = 0.0;  // sums of |a||b| cos and |a||b| sin of the angle from a to b
+  // Sums over pairs of |a||b| cos and |a||b| sin of the angle from a to b.
+  double along = 0.0, across = 0.0;
   for (std::size_t i = 0; i < from.size(); ++i) {
     const Eigen::Vector2d a = from[i] - centre, b = onto[i] - target;
     along = std::fma(a.x(), b.x(), std::fma(a.y(), b.y(), along));

@@ -27,9 +27,9 @@ struct RigidMotion {
 RigidMotion rigid_alignment(std::span<const Eigen::Vector2d> from,
                             std::span<const Eigen::Vector2d> onto);
 
-/// Gated numbers use the fixes with an error of at most so many times the run's own median error,
-/// since a GPS fix may be 136 m off. Read them with the share of fixes kept: a filter that leaves
-/// the path half way keeps few.
+/// Gated numbers use the fixes whose error is at most this many times the run's own median error,
+/// since a GPS fix may be 136 m off. They must be read with the share of fixes kept: a filter that
+/// leaves the path half way keeps few.
 inline constexpr double kReferenceGate = 4.0;
 
 /// A run has lost the map if the median of its aligned errors is larger than this [m].
@@ -42,12 +42,12 @@ inline constexpr double kLostBeyond = 10.0;
 struct ReferenceScores {
   double rms = kNaN;                  ///< [m] raw
   double median = kNaN;               ///< [m] raw
-  double gated_rms = kNaN;            ///< [m] raw, over fixes within kReferenceGate medians
-  double gated_share = kNaN;          ///< [1] of fixes within
-  double aligned_rms = kNaN;          ///< [m]
-  double aligned_median = kNaN;       ///< [m]
-  double aligned_gated_rms = kNaN;    ///< [m]
-  double aligned_gated_share = kNaN;  ///< [1]
+  double gated_rms = kNaN;            ///< [m] raw, over the fixes within kReferenceGate medians
+  double gated_share = kNaN;          ///< [1] raw, share of the fixes within kReferenceGate medians
+  double aligned_rms = kNaN;          ///< [m] aligned
+  double aligned_median = kNaN;       ///< [m] aligned
+  double aligned_gated_rms = kNaN;    ///< [m] aligned, over fixes within kReferenceGate medians
+  double aligned_gated_share = kNaN;  ///< [1] aligned, share of the fixes within
   double heading_rmse = kNaN;         ///< [rad] raw; NaN where the reference has no heading
 
   static constexpr auto members() {
@@ -57,16 +57,16 @@ struct ReferenceScores {
                       &Scores::aligned_gated_share, &Scores::heading_rmse);
   }
 
-  /// True even if estimates are not finite: gated_share is then 0.
+  /// Returns whether there are fixes, also if estimates are not finite: gated_share is then 0.
   bool has_fixes() const { return !std::isnan(rms) || !std::isnan(gated_share); }
   bool lost() const { return !(aligned_median <= kLostBeyond); }
 };
 
-/// One run against one reference.
+/// Comparison of one run with one reference.
 struct ReferenceRun {
   ReferenceScores scores;
-  std::vector<double> squared_error;  ///< [m^2] {fix} raw
-  RigidMotion alignment;              ///< of the path onto the fixes
+  std::vector<double> squared_error;  ///< [m^2] {fix} raw squared distance
+  RigidMotion alignment;              ///< motion that aligns the path with the fixes
 };
 
 /// Compares a path {row, 3} [m, m, rad] with `fixes`, which were made for its rows.

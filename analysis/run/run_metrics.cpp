@@ -37,7 +37,7 @@ void measure_nees(const std::vector<double>& truth, const MomentRows& moments, N
   }
 }
 
-/// NEES of imported errors: all components, and for a pose in the plane also its parts.
+/// NEES of imported errors: of all components, and for a pose in the plane also of its parts.
 void measure_imported(const ErrorRows& errors, bool is_pose, NeesRows& rows) {
   const std::size_t d = errors.components();
   const std::size_t scans = errors.scans();
@@ -56,9 +56,9 @@ void measure_imported(const ErrorRows& errors, bool is_pose, NeesRows& rows) {
   }
 }
 
-/// The direction ahead of a vehicle with this estimate. If that is the mean of so many `draws`
-/// (infinite: it is exact), the mean of draws and truth does not depend on the error (STATISTICS
-/// 5).
+/// The forward direction of a vehicle with this estimate. If the estimate is the mean of `draws`
+/// draws (infinite if it is exact), the direction is that of the mean of draws and truth, which
+/// does not depend on the error (STATISTICS 5).
 Direction<double> ahead_in(ErrorFrame frame, const Pose& mean, const Pose& truth,
                            double draws = std::numeric_limits<double>::infinity()) {
   if (frame == ErrorFrame::of_truth) return direction_of(truth.heading);
@@ -66,8 +66,8 @@ Direction<double> ahead_in(ErrorFrame frame, const Pose& mean, const Pose& truth
 }
 
 /// Turns x and y of `error`, and of the covariance of scan `s` if there is one, to forward and left
-/// of a vehicle that heads `ahead`; `P` becomes that covariance. All is done in place: copies of
-/// numbers that were just written would wait for memory.
+/// of a vehicle that heads `ahead`; `P` becomes the turned covariance. All is done in place, since
+/// copies of numbers that were just written would wait for memory.
 void turn_pose(const Direction<double>& ahead, const std::vector<double>& covariances,
                std::size_t s, Eigen::Vector3d& error, Eigen::Matrix3d& P) {
   const Eigen::Matrix2d turn{{ahead.cosine, ahead.sine}, {-ahead.sine, ahead.cosine}};
@@ -78,8 +78,8 @@ void turn_pose(const Direction<double>& ahead, const std::vector<double>& covari
   P.leftCols<2>() = P.leftCols<2>() * turn.transpose();
 }
 
-/// Makes errors of drawn poses normal: the squares of all components together, and each component
-/// by itself, become as large as they are probable (STATISTICS 4).
+/// Puts errors of drawn poses on the scale of the normal law: the squares of all components
+/// together, and each component by itself, become the values of equal probability (STATISTICS 4).
 void put_on_normal_scale(const DrawsScales& scales, WhitenedPose& pose) {
   double squares = 0.0;
   for (const double u : pose.whitened) squares += std::isnan(u) ? 0.0 : u * u;
@@ -130,8 +130,8 @@ const NeesRows* RunMetrics::leading_nees() const {
   return found == nees_.end() ? nullptr : &*found;
 }
 
-/// Poses that a scan drew are judged as so many draws. Where none were drawn the covariance has
-/// each particle's own in it and is judged as it is, if the filter has a mixture (STATISTICS 4).
+/// Corrects the spread for the number of draws. At a scan that drew no poses, the covariance
+/// includes each particle's own and is judged as it is, if the filter has a mixture (STATISTICS 4).
 void RunMetrics::correct_spread(std::size_t s, const std::optional<DrawsScales>& scales) {
   NeesRows& corrected = nees_[static_cast<std::size_t>(Moments::corrected)];
   const NeesRows& mixture = nees(Moments::mixture);
@@ -149,7 +149,7 @@ void RunMetrics::correct_spread(std::size_t s, const std::optional<DrawsScales>&
   }
 }
 
-/// Writes one scan of a pose by the moments that lead there.
+/// Whitens the pose of scan `s` by the moments that lead at this scan.
 void RunMetrics::whiten_pose(const RunRows& rows, std::size_t s,
                              const std::optional<DrawsScales>& scales, ErrorFrame frame) {
   const MomentRows& moments =
@@ -192,7 +192,7 @@ void RunMetrics::correct_and_whiten(const RunRows& rows, std::size_t particles, 
       if (is_drawn(rows, s)) scales = scales_of(draws_at(rows, particles, s));
       correct_spread(s, scales);
     }
-    // Known exactly, by all of its components. The spread of drawn poses is no such claim.
+    // All components are known exactly. The spread of drawn poses makes no such claim.
     const bool is_known = leading->rank[0][s] == 0 && leading != &corrected;
     if (std::isnan(leading->value[0][s]) && !is_known) continue;
     if (rows.error.components() == 0) {

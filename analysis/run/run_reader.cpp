@@ -63,11 +63,11 @@ void RunReader::read_final_map(std::size_t i, RunRows& rows) const {
   const std::string prefix = is_final ? "final_map_" : "map_";
   if (!cell_->has(prefix + "seen")) return;
   const std::size_t landmarks = cell_->find(prefix + "seen")->shape.back();
-  // A mean over weights that add up to one but for rounding.
+  // The map size may be a mean over weights that add up to one but for rounding.
   if (!rows.map_size.empty() &&
       rows.map_size.back() > static_cast<double>(landmarks) + kRoundingOfCounts)
-    return;                 // record.map_rows left part of it out
-  std::vector<double> all;  // at every scan, or at the last one
+    return;                 // record.map_rows left some rows out
+  std::vector<double> all;  // maps of every scan, or of the last one
   const auto last = [&](const char* name, std::size_t width) {
     read_whole(prefix + name, i, all);
     const std::size_t maps = is_final ? 1 : scans_of(i);

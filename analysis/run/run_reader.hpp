@@ -15,12 +15,12 @@ namespace montecarta::analysis {
 /// The drive of one run: views into a file's description.
 struct RunDrive {
   std::span<const double> scan_times;         ///< [s]
-  std::span<const std::uint32_t> scan_steps;  ///< step after which each scan was taken
-  Pose start;                                 ///< before the first step
-  std::span<const ReferencePath> references;  ///< of a recorded drive
+  std::span<const std::uint32_t> scan_steps;  ///< {scan} step after which the scan was taken
+  Pose start;                                 ///< pose before the first step
+  std::span<const ReferencePath> references;  ///< references of a recorded drive
 };
 
-/// The drive of run number `run` of the study, also if the file does not hold that run. The file
+/// The drive of run number `run` of the study, even if the file does not hold that run. The file
 /// must outlive it.
 inline RunDrive drive_of_run(const ResultFile& file, std::uint64_t run) {
   const ResultDescription& all = file.description();
@@ -29,7 +29,7 @@ inline RunDrive drive_of_run(const ResultFile& file, std::uint64_t run) {
   return {own.scan_times, own.scan_steps, own.start, own.references};
 }
 
-/// The columns that are read: those that every run has, or all that a run has.
+/// The columns that are read: those stored for every run, or all that are stored for a run in full.
 enum class Reach : std::uint8_t { every_run, full_run };
 
 /// Reads the runs of one cell at its scans. Any number of threads may call read(), each with its
@@ -41,32 +41,32 @@ class RunReader {
   /// Number of particles of the cell; 0 if it has none.
   std::size_t particles() const { return cell_->particles; }
 
-  /// Fills `rows` with run index `i` (0-based in the file), which is complete. Throws StudyError if
-  /// the run is damaged (ResultFile::expect_whole()).
+  /// Fills `rows` from run index `i` (0-based in the file), which must be complete. Throws
+  /// StudyError if the run is damaged (ResultFile::expect_whole()).
   void read(std::size_t i, RunRows& rows) const;
 
  private:
-  /// Returns whether run index `i` has the column, and is to give it.
+  /// Returns whether run index `i` has the column and Reach allows it to be read.
   bool has(std::string_view column, std::size_t i) const;
   void read_truth(std::size_t i, std::vector<double>& out) const;
   void read_path(std::size_t i, std::vector<double>& out) const;
-  /// The map after the last scan, also of columns that hold every one.
+  /// Reads the map after the last scan, also from columns that hold the map of every scan.
   void read_final_map(std::size_t i, RunRows& rows) const;
-  /// A column over time, of which scans are kept; `width` numbers a row. Empty where not stored.
+  /// Reads the scans of a column over time; `width` numbers a row. Empty if it is not stored.
   void read_at_scans(std::string_view column, std::size_t width, std::size_t i,
                      std::vector<double>& out) const;
-  /// All of a column, as far as it is stored.
+  /// Reads a whole column, as far as it is stored.
   void read_whole(std::string_view column, std::size_t i, std::vector<double>& out) const;
-  /// Weights, parents and poses of the particles; empty where the cell has none.
+  /// Reads weights, parents and poses of the particles; empty if the cell has none.
   void read_particles(std::size_t i, RunRows& rows) const;
   /// Throws StudyError where a parent does not exist.
   void expect_particles(const RunRows& rows) const;
   template <class Number>
   void read_scans(std::string_view column, std::size_t width, std::size_t i,
                   std::vector<Number>& out) const;
-  /// Number of scans of run index `i`. A drive shorter than others has fewer than the file.
+  /// Number of scans of run index `i`. A drive of its own may have fewer scans than the file.
   std::size_t scans_of(std::size_t i) const;
-  /// Leaves of rows of `width` numbers those at the scans of run index `i`.
+  /// Keeps, of rows of `width` numbers, those at the scans of run index `i`.
   void keep_scans(std::size_t width, std::size_t i, std::vector<double>& rows) const;
 
   const ResultFile* file_;
@@ -75,7 +75,7 @@ class RunReader {
   std::vector<double> cpu_seconds_;
 };
 
-/// One run alone, index `i`, with the columns that are stored only of runs in full.
+/// Reads run index `i` alone, with the columns that are stored only for runs in full.
 RunRows read_run(const ResultFile& file, const StoredCell& cell, std::size_t i);
 
 }  // namespace montecarta::analysis

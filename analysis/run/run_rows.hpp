@@ -13,14 +13,14 @@
 
 namespace montecarta::analysis {
 
-/// The map of a run after its last scan, row by row; rows are identities of the world with known
-/// association, else the order of initialisation.
+/// {landmark} The map of a run after its last scan. With known association the rows are identities
+/// of the world, else the order of initialisation.
 struct FinalMap {
-  std::vector<std::uint32_t> seen;          ///< {landmark} 1 where it is in the map
+  std::vector<std::uint32_t> seen;          ///< {landmark} 1 if it is in the map
   std::vector<Eigen::Vector2d> mean;        ///< [m] {landmark}
   std::vector<Eigen::Matrix2d> covariance;  ///< [m^2] {landmark}
 
-  /// [m] of the landmarks that are in the map.
+  /// [m] positions of the landmarks that are in the map.
   std::vector<Eigen::Vector2d> places() const {
     std::vector<Eigen::Vector2d> found;
     for (std::size_t l = 0; l < seen.size(); ++l) {
@@ -30,7 +30,7 @@ struct FinalMap {
   }
 };
 
-/// Mean and covariance of the pose at every scan of one run, row by row; empty where not stored.
+/// Mean and covariance of the pose at every scan of one run; empty if not stored.
 struct MomentRows {
   std::vector<double> mean;        ///< {scan, 3} [m, m, rad]
   std::vector<double> covariance;  ///< {scan, 3, 3}
@@ -41,10 +41,11 @@ struct AssociationRows {
   std::vector<double> correct, wrong, new_again, missed, clutter;  ///< {scan}
 };
 
-/// Pose and map together at the scans of ResultDescription::joint_scans; empty where not stored.
+/// Estimate of pose and map together at the scans of ResultDescription::joint_scans; empty if not
+/// stored.
 struct JointRows {
-  std::vector<double> mean;        ///< {joint, state}; NaN of landmarks never seen
-  std::vector<double> covariance;  ///< {joint, state, state}
+  std::vector<double> mean;        ///< {joint scan, state}; NaN for landmarks never seen
+  std::vector<double> covariance;  ///< {joint scan, state, state}
 
   std::size_t states() const { return mean.empty() ? 0 : covariance.size() / mean.size(); }
 };
@@ -53,8 +54,9 @@ struct JointRows {
 /// where not stored.
 struct ErrorRows {
   std::vector<double> value;       ///< {scan, component}
-  std::vector<double> covariance;  ///< {scan, component, component} as the other program gave it
-  /// {kErrorConventions}{scan} NEES if the covariance were of that error; empty where not stored.
+  std::vector<double> covariance;  ///< {scan, component, component} as imported
+  /// {kErrorConventions}{scan} NEES if the covariance belonged to the error of that convention;
+  /// empty if not stored.
   std::array<std::vector<double>, kErrorConventions.size()> nees_by;
 
   std::size_t components() const { return value.empty() ? 0 : covariance.size() / value.size(); }
@@ -73,8 +75,8 @@ struct ErrorRows {
 /// All data of one run that the analysis uses, as plain arrays. Columns that are not stored are
 /// empty.
 struct RunRows {
-  std::vector<double> truth;  ///< {scan, 3} [m, m, rad]; empty where nobody knows it
-  MomentRows spread;          ///< its mean is always there but in files of other states than poses
+  std::vector<double> truth;  ///< {scan, 3} [m, m, rad]; empty if unknown
+  MomentRows spread;          ///< mean always stored, except in files of states that are no poses
   MomentRows mixture;
   std::vector<double> ess;                      ///< {scan}
   std::vector<std::uint32_t> resampled;         ///< {scan} 0 or 1
@@ -85,20 +87,20 @@ struct RunRows {
   std::vector<double> nis;                      ///< {scan}
   std::vector<std::uint32_t> nis_dof;           ///< {scan}
   AssociationRows association;
-  std::vector<double> path;      ///< {row, 3} [m, m, rad] leading mean, also between scans; only
-                                 ///< where the drive has references
-  std::vector<double> map_size;  ///< {scan} landmarks in the map
-  std::vector<double> rotation_information;  ///< [1/rad^2] {scan}; empty where not stored
-  std::optional<FinalMap> final_map;         ///< at the last scan, if stored and whole
+  /// {row, 3} [m, m, rad] leading mean, also between scans; empty without references.
+  std::vector<double> path;
+  std::vector<double> map_size;              ///< {scan} number of landmarks in the map
+  std::vector<double> rotation_information;  ///< [1/rad^2] {scan}; empty if not stored
+  std::optional<FinalMap> final_map;         ///< map at the last scan, if stored and whole
   JointRows joint;
-  ErrorRows error;                         ///< of imported estimates
-  std::uint64_t run = 0;                   ///< its number in the study
-  std::vector<Eigen::Vector2d> landmarks;  ///< [m] true positions in this run, by identity; empty
-                                           ///< where unknown
+  ErrorRows error;        ///< errors of imported estimates
+  std::uint64_t run = 0;  ///< number of the run in the study
+  /// [m] true positions in this run, by identity; empty if unknown.
+  std::vector<Eigen::Vector2d> landmarks;
   double cpu_seconds = 0.0;
 };
 
-/// The estimate with the judged errors: the mixture if it is stored, else the spread.
+/// The estimate whose errors are judged: the mixture if it is stored, else the spread.
 inline const MomentRows& estimate_of(const RunRows& rows) {
   return rows.mixture.mean.empty() ? rows.spread : rows.mixture;
 }

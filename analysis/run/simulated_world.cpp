@@ -10,7 +10,7 @@
 namespace montecarta::analysis {
 namespace {
 
-/// Settings of a scenario by name; notes whether all that must be there is.
+/// Settings of a scenario by name, with a flag for missing settings.
 class Facts {
  public:
   explicit Facts(const TextPairs& pairs) : pairs_(&pairs) {}
@@ -44,7 +44,8 @@ class Facts {
   bool complete_ = true;
 };
 
-/// The sensor with its mount, which files omit where it is usual; nullopt if it is unknown.
+/// The sensor with its mount, which files omit if it is the usual one; nullopt if the sensor is
+/// unknown.
 std::optional<Sensor> sensor_of(const Facts& facts) {
   const auto usual = [&](const char* key) {
     return in_si(key, facts.optional_number(key).value_or(0.0));

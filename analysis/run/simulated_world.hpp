@@ -17,10 +17,12 @@ namespace montecarta::analysis {
 struct SimulatedWorld {
   Vehicle vehicle;
   ControlNoise control_noise;
-  Eigen::Vector2d sigma_observation;  ///< of the sensor's components (deviations_of())
-  double detected = 1.0;              ///< probability that a landmark in view is detected
+  /// Standard deviations of the sensor's components (deviations_of()).
+  Eigen::Vector2d sigma_observation;
+  double detected = 1.0;  ///< probability that a landmark in view is detected
   FieldOfView view;
-  bool same_path = true;  ///< of all runs: the noise is on the controls that filters are given
+  /// Whether all runs share the path: the noise is on the controls that filters receive.
+  bool same_path = true;
   Sensor sensor = {};
 };
 

@@ -16,9 +16,10 @@ namespace {
 constexpr std::size_t kMostReplicates = 2000, kFewestReplicates = 400;
 constexpr std::size_t kMostDraws = 20'000'000;
 constexpr std::size_t kMostRunsToDraw = 20'000;
-constexpr std::size_t kSums = engine::Lanes::kSize;  // that grow at once
+constexpr std::size_t kSums = engine::Lanes::kSize;  // number of sums that grow at once
 
-/// Student's quantile for so many runs, by which the tails of the normal law are widened.
+/// Student's quantile for this number of runs, widened for the bootstrap; it takes the place of the
+/// normal one.
 double widened_deviate(std::size_t runs, double level) {
   const auto n = static_cast<double>(runs);
   return std::sqrt(n / (n - 1.0)) * t_score(level, n - 1.0);
@@ -32,8 +33,8 @@ double bias_deviate(const std::vector<double>& means, double mean) {
   return normal_quantile(std::clamp(below / n, 0.5 / n, 1.0 - 0.5 / n));
 }
 
-/// The value below which a share `p` of the replicates lies, between its neighbours. Sorts `means`
-/// as far as that needs.
+/// The value below which a share `p` of the replicates lies, interpolated between its neighbours.
+/// Sorts `means` only as far as needed.
 double quantile_of(std::vector<double>& means, double p) {
   const auto last = static_cast<double>(means.size() - 1);
   const double place = std::clamp(p * (last + 1.0) - 0.5, 0.0, last);
@@ -108,7 +109,7 @@ std::vector<Interval> bootstrap_means(std::span<const std::vector<double>> colum
   for (std::size_t b = 0; b < replicates; ++b) {
     draw_runs(runs, b, drawn);
     for (std::size_t first = 0; first < width; first += kSums) {
-      engine::Lanes sums(0.0);  // of as many columns as a register has
+      engine::Lanes sums(0.0);  // sums of as many columns as a register holds
       for (const std::uint32_t i : drawn) {
         sums = sums + engine::Lanes::load_unaligned(rows.data() + i * width + first);
       }

@@ -17,12 +17,14 @@
 namespace montecarta::analysis {
 namespace {
 
-constexpr std::size_t kEveryLag = 128;  // up to here, then in steps that grow with the lag
+constexpr std::size_t kEveryLag = 128;  // lags up to here are all evaluated, then in growing steps
 constexpr double kLagGrowth = 1.05;
 constexpr double kWindow = 5.0;
-constexpr double kChanceFactor = 4.0;  // times its mean by chance
+// Least squared correlation that counts, in units of its mean by chance.
+constexpr double kChanceFactor = 4.0;
 
-/// `of(lag)` at few lags, linear in between: a long series costs n log n.
+/// {lag} `of(lag)`, evaluated at few lags and linear in between, so that a long series costs n log
+/// n.
 template <class Function>
 std::vector<double> at_all_lags(std::size_t samples, const Function& of) {
   std::vector<double> values(samples);
@@ -148,13 +150,15 @@ double saddlepoint(std::span<const WeightedSquares> terms, double x) {
 }
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr std::size_t kBlocks = 24;     // of a series, between which correlation is resolved
-constexpr double kFarthestRatio = 1e9;  // beyond, an interval has no upper end
+// Number of blocks of a series, between which correlation is resolved.
+constexpr std::size_t kBlocks = 24;
+constexpr double kFarthestRatio = 1e9;  // beyond this ratio an interval has no upper end
 constexpr double kMostEffective = 1e9;
-constexpr double kEndAccuracy = 1e-4;  // of the end of an interval, relative
+constexpr double kEndAccuracy = 1e-4;  // relative accuracy of the end of an interval
 
-/// Mean square of n correlated samples of one component, as a sum of independent squares. Samples
-/// have the `semivariance` {lag}; their covariance at a lag is `variance` minus it.
+/// Law of the mean square of n correlated samples of one component, as a sum of independent
+/// squares. Samples have the `semivariance` {lag}; their covariance at a lag is `variance` minus
+/// the semivariance.
 class ComponentLaw {
  public:
   ComponentLaw(const std::vector<double>& semivariance, double variance) : variance_(variance) {
@@ -162,7 +166,7 @@ class ComponentLaw {
     covariance_.front() = variance;
   }
 
-  /// Adds them with weights divided by `dimension`.
+  /// Adds the squares to `terms`, with weights divided by `dimension`.
   void add_to(std::vector<WeightedSquares>& terms, double dimension) const {
     const Eigen::VectorXd slow =
         Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(between_blocks(), Eigen::EigenvaluesOnly)
@@ -188,7 +192,7 @@ class ComponentLaw {
     return sum / n;
   }
 
-  /// Covariance of the means of two blocks that lie so many blocks apart.
+  /// Covariance of the means of two blocks of `length` samples that are `apart` blocks apart.
   double covariance_at(std::size_t apart, double length) const {
     const double middle = static_cast<double>(apart) * length;
     const auto first = static_cast<std::size_t>(std::max(std::ceil(middle - length), 0.0));
@@ -217,11 +221,11 @@ class ComponentLaw {
   }
 
   double variance_;
-  std::vector<double> covariance_;  ///< {lag}
+  std::vector<double> covariance_;  ///< {lag} covariance of the samples
 };
 
-/// Probability that drives with an expected ratio of `ratio` have a mean of averages of at most
-/// `mean`, if the part that their variograms do not show is errors that last for a whole drive.
+/// Probability that the mean of the averages of drives with an expected ratio of `ratio` is at most
+/// `mean`, if the part of the errors that their variograms do not show lasts for a whole drive.
 double probability_of_less(const std::vector<VectorSeries>& variograms, double mean, double ratio) {
   std::vector<WeightedSquares> terms;
   for (const VectorSeries& variogram : variograms) {
@@ -233,7 +237,7 @@ double probability_of_less(const std::vector<VectorSeries>& variograms, double m
   return probability_below(terms, mean);
 }
 
-/// The ratio from `mean` on at which the decreasing `probability` is `tail`.
+/// The ratio, at least `mean`, at which the decreasing `probability` equals `tail`.
 double ratio_where(const std::function<double(double)>& probability, double tail, double mean) {
   double below = mean, above = 2.0 * mean;
   while (probability(above) > tail) {
@@ -248,13 +252,13 @@ double ratio_where(const std::function<double(double)>& probability, double tail
   return above;
 }
 
-/// Upper bound of an average of a consistent filter, over its expectation, with so many degrees of
-/// freedom.
+/// Upper bound of a consistent filter's average with this number of degrees of freedom, divided by
+/// its expectation.
 double largest_by_chance(double freedom, double tail) {
   return chi_squared_beyond(tail, freedom) / freedom;
 }
 
-/// Average of the squares, and their variance in units of the square of the average.
+/// Average of the squares, and variance of the squares in units of the squared average.
 struct SquareMoments {
   double mean = 0.0, variation = 0.0;
 };
@@ -272,14 +276,16 @@ SquareMoments moments_of_nees(const VectorSeries& errors) {
   return {mean, mean > 0.0 ? squares / count / (mean * mean) : 0.0};
 }
 
-/// Squares of errors that are not Gaussian, for instance with a few outliers, vary more than 2 / d.
+/// Effective samples of the errors. There are fewer if the squares vary more than 2 / d, as those
+/// of errors with a few outliers do.
 double effective_samples_of(const VectorSeries& errors, const SquareMoments& nees) {
   const auto d = static_cast<double>(errors.size());
   const double gaussian = nees.variation > 2.0 / d ? 2.0 / d / nees.variation : 1.0;
   return std::max(effective_samples(squared_correlations(errors)) * gaussian, 1.0);
 }
 
-/// Interval by chi-square bounds for a series with so many independent samples; 1 is expected.
+/// Ratio of the ends of the interval for a series with this number of independent samples, whose
+/// average is 1.
 double end_ratio(double samples, double d, double tail) {
   const auto probability = [&](double ratio) {
     const std::array<WeightedSquares, 2> terms = {
@@ -310,12 +316,12 @@ CorrelatedAverage correlated_average(const VectorSeries& errors, double level) {
 CorrelatedAverage correlated_average(std::span<const VectorSeries> drives, double level) {
   expect(!drives.empty() && !drives.front().empty() && !drives.front().front().empty(),
          "there is a drive, and a series has components and samples");
-  nees_bounds(1, 1, level);  // refuses a wrong level
+  nees_bounds(1, 1, level);  // throws if the level is wrong
   const double tail = 0.5 * (1.0 - level);
   const auto d = static_cast<double>(drives.front().size());
   const auto count = static_cast<double>(drives.size());
   CorrelatedAverage result;
-  double inverse = 0.0;  // sum over drives of one over their effective samples
+  double inverse = 0.0;  // sum over drives of 1 / effective samples
   for (const VectorSeries& errors : drives) {
     const SquareMoments nees = moments_of_nees(errors);
     result.mean += nees.mean / d / count;

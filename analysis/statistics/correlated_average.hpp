@@ -13,23 +13,23 @@ namespace montecarta::analysis {
 /// A vector of a few components at equal steps: {component}{sample}, equally long.
 using VectorSeries = std::vector<std::vector<double>>;
 
-/// Squared Frobenius norm of the correlation matrix of samples `lag` steps apart about zero, over
-/// components x (mean square)^2: 1 at lag 0 of a white series with equal components, at most 1 as
-/// returned. {lag}, as many as samples. Correlations between two components count where they are
-/// more than twice as large as by chance.
+/// {lag} Squared Frobenius norm of the correlation matrix (about zero) of samples `lag` steps
+/// apart, divided by components x (mean square)^2; as many lags as samples. A white series with
+/// equal components has 1 at lag 0; no returned value is above 1. Correlations between two
+/// components count only where they are more than twice as large as chance makes them.
 std::vector<double> squared_correlations(const VectorSeries& series);
 
-/// Semivariance of each component: half of the mean squared difference of samples `lag` steps
-/// apart. {component}{lag}
+/// {component}{lag} Semivariance: half of the mean squared difference of samples `lag` steps apart.
 VectorSeries semivariances(const VectorSeries& series);
 
-/// Number of independent samples with the same variance of the average of squares, if the
+/// Number of independent samples for which the average of squares has the same variance, if the
 /// components are Gaussian with mean zero: n / (1 + 2 sum (1 - lag / n) squared correlation),
 /// summed up to the first lag beyond five times the sum (A. Sokal: Monte Carlo methods in
 /// statistical mechanics, 1997). In [1, n].
 double effective_samples(std::span<const double> squared_correlations);
 
-/// A chi-square of `count` degrees of freedom, not always whole, times `weight` >= 0.
+/// A chi-square variable with `count` degrees of freedom, which need not be whole, times `weight`
+/// >= 0.
 struct WeightedSquares {
   double weight = 0.0;
   double count = 1.0;
@@ -43,10 +43,10 @@ double probability_below(std::span<const WeightedSquares> terms, double x);
 
 /// Test of the NEES along one drive (STATISTICS 20).
 struct CorrelatedAverage {
-  double mean = 0.0;               ///< average NEES divided by the components: 1 is expected
-  double effective_samples = 0.0;  ///< independent ones with an average that varies as much
-  Interval ratio = {};             ///< where the expected average of all such drives lies, over
-                                   ///< the components
+  double mean = 0.0;  ///< average NEES divided by the number of components; its expectation is 1
+  double effective_samples = 0.0;  ///< number of independent samples whose average varies as much
+  /// Interval of the expected average over all such drives, divided by the number of components.
+  Interval ratio = {};
   static constexpr auto members() {
     using Average = CorrelatedAverage;
     return std::tuple(&Average::mean, &Average::effective_samples, &Average::ratio);
@@ -60,12 +60,12 @@ struct CorrelatedAverage {
 /// Throws StudyError if level is not inside (0, 1); there must be a component and a sample.
 CorrelatedAverage correlated_average(const VectorSeries& errors, double level);
 
-/// Tests the mean over one or more independent drives, with equal numbers of components, of their
-/// averages; drives of all lengths count alike.
+/// Tests the mean of the averages of one or more independent drives with equal numbers of
+/// components. Drives of all lengths count alike.
 CorrelatedAverage correlated_average(std::span<const VectorSeries> drives, double level);
 
-/// Number of effective samples that make the interval so short that the ratio of its ends is at
-/// most `within`, so that it excludes 1 or lies in [1 / within, within]; infinite if more than 1e9.
+/// Number of effective samples at which the ratio of the interval's ends is at most `within`: the
+/// interval then excludes 1 or lies in [1 / within, within]. Infinite if it is more than 1e9.
 double samples_that_decide(std::size_t dimension, double level, double within);
 
 }  // namespace montecarta::analysis

@@ -15,7 +15,7 @@ using boost::math::cdf;
 using boost::math::complement;
 using boost::math::quantile;
 
-constexpr double kLeastTail = 1e-17;  // of a level that rounding made 1
+constexpr double kLeastTail = 1e-17;  // tail of a level that rounding made 1
 
 }  // namespace
 

@@ -9,7 +9,7 @@ namespace montecarta::analysis {
 double normal_cdf(double z);
 double normal_quantile(double probability);
 
-/// Probability that a chi-square variable is at most `value`, and that it is above.
+/// Probabilities that a chi-square variable is at most `value` (cdf), and above `value` (tail).
 double chi_squared_cdf(double value, double freedom);
 double chi_squared_tail(double value, double freedom);
 double chi_squared_quantile(double probability, double freedom);
@@ -18,9 +18,9 @@ double chi_squared_beyond(double tail, double freedom);
 
 /// Probability that Student's t is at most `t`.
 double t_cdf(double t, double freedom);
-/// Two-sided p-value of Student's t; of the normal law if `freedom` is infinite.
+/// Two-sided p-value of Student's t, or of the normal law if `freedom` is infinite.
 double t_p_value(double t, double freedom);
-/// How far Student's t is from zero at most with probability `level`.
+/// The distance from zero that Student's t does not exceed with probability `level`.
 double t_score(double level, double freedom);
 
 }  // namespace montecarta::analysis

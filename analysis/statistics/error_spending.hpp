@@ -6,15 +6,16 @@
 
 namespace montecarta::analysis {
 
-/// Share of the error probability `alpha` that interim analyses have spent when `information`, in
-/// [0, 1], of the runs are there: 2 - 2 Phi(z / sqrt(information)), which resembles the boundaries
-/// of O'Brien and Fleming (Lan and DeMets 1983).
+/// Part of the error probability `alpha` that interim analyses have spent when a share
+/// `information`, in [0, 1], of the runs has ended: 2 - 2 Phi(z / sqrt(information)), which
+/// resembles the boundaries of O'Brien and Fleming (Lan and DeMets 1983).
 double spent(double alpha, double information);
 
-/// Level of the interim analysis of `runs` runs, where `looks` are the increasing numbers of runs
-/// of all interim analyses. Each has the error probability that is spent since the one before, so
-/// that together they reject with a probability of at most 1 - level, for any dependence between
-/// them. Between two looks it is the level of the next one. Without looks it is `level`.
+/// Level of the interim analysis of `runs` runs. `looks` are the increasing numbers of runs at all
+/// interim analyses. Each analysis has the error probability that is spent since the one before, so
+/// that together they reject with a probability of at most 1 - level, whatever the dependence
+/// between them. For a number of runs between two analyses it is the level of the next one. Without
+/// interim analyses it is `level`.
 double level_of_look(double level, std::span<const std::uint64_t> looks, std::uint64_t runs);
 
 }  // namespace montecarta::analysis

@@ -14,14 +14,14 @@ struct Interval {
   static constexpr auto members() { return std::tuple(&Interval::lower, &Interval::upper); }
 };
 
-/// One end of each: `&Interval::lower` or `&Interval::upper`.
+/// The lower or upper ends of `intervals`; `end` is `&Interval::lower` or `&Interval::upper`.
 std::vector<double> ends_of(const std::vector<Interval>& intervals, double Interval::*end);
 
-/// "[3.38, 3.79]"; "-" where there is no interval.
+/// Text of an interval, "[3.38, 3.79]"; "-" where there is no interval.
 std::string interval_text(const Interval& interval);
 
-/// A mean with the interval that holds it, "3.58 [3.38, 3.79]": all to the second significant digit
-/// of the interval's half width. The mean alone where there is no interval.
+/// Text of a mean with its interval, "3.58 [3.38, 3.79]", with all numbers to the second
+/// significant digit of the interval's half width; the mean alone where there is no interval.
 std::string with_interval(double mean, const Interval& interval);
 
 }  // namespace montecarta::analysis

@@ -40,14 +40,14 @@ struct PlannedSum {
 
   double freedom() const { return runs * independent * block; }
 
-  /// The interval of the true ratio that the verdict will compute from runs of a ratio of 1 as they
-  /// vary on average.
+  /// Interval of the true ratio that the verdict will compute from runs with a ratio of 1 that vary
+  /// as much as on average.
   Interval interval(double level) const {
     Summary run;
     run.n = static_cast<std::size_t>(runs);
     run.mean = 1.0;
     run.sd = std::sqrt(2.0 / (independent * block));
-    run.skewness = 2.0 * run.sd;  // of a chi-square variable
+    run.skewness = 2.0 * run.sd;  // skewness of a chi-square variable
     return RunMean::of_ratio(run).interval(level);
   }
 
@@ -66,8 +66,8 @@ struct PlannedSum {
   }
 };
 
-/// Probability that the interval of a mean that is zero is not within +-`margin`, of `n` values
-/// with deviation 1.
+/// Probability that the interval of a zero mean of `n` values with deviation 1 is not within
+/// +-`margin`.
 double mean_not_shown(double margin, double n, double level) {
   const double room = margin * std::sqrt(n) - t_score(level, n - 1.0);
   return room <= 0.0 ? 1.0 : t_p_value(room, n - 1.0);
@@ -101,7 +101,7 @@ NeesPlan::NeesPlan(const NeesTest& test) : test_(test) {
     throw StudyError("scans = " + std::to_string(test.scans) +
                      " (a run has 1 to 100000 independent scans): give what a run has");
   }
-  nees_bounds(1, test.dimension, test.level);  // refuses a wrong dimension or level
+  nees_bounds(1, test.dimension, test.level);  // throws if dimension or level is wrong
 }
 
 double NeesPlan::found(double ratio, std::uint64_t runs) const {
@@ -142,7 +142,7 @@ std::uint64_t NeesPlan::runs_to_show(double within, double power) const {
 }
 
 std::uint64_t NeesPlan::fewest(const std::function<bool(std::uint64_t)>& is_enough) const {
-  std::uint64_t enough = 3;  // fewer say nothing
+  std::uint64_t enough = 3;  // fewer runs reject nothing
   while (!is_enough(enough)) {
     if (enough >= kMostPlannedRuns) {
       throw StudyError("more than " + std::to_string(kMostPlannedRuns) +

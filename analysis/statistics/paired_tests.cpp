@@ -10,7 +10,7 @@
 namespace montecarta::analysis {
 namespace {
 
-/// Indices of `values` such that key(values[i]) does not decrease; equal ones in their order.
+/// Indices of `values` such that key(values[i]) does not decrease; equal values keep their order.
 template <class Key>
 std::vector<std::size_t> sorted_indices(std::span<const double> values, Key key) {
   std::vector<std::size_t> order(values.size());
@@ -19,7 +19,8 @@ std::vector<std::size_t> sorted_indices(std::span<const double> values, Key key)
   return order;
 }
 
-/// Sum of t^3 - t over groups of t equal sizes, by which ties reduce the variance of the rank sum.
+/// Adds the ranks to `test`. Returns the sum of t^3 - t over groups of t equal sizes, by which ties
+/// reduce the variance of the rank sum.
 double add_ranks(std::span<const double> differences, SignedRank& test) {
   const auto size = [](double value) { return std::abs(value); };
   const auto order = sorted_indices(differences, size);

@@ -10,14 +10,15 @@
 namespace montecarta::analysis {
 namespace {
 
-constexpr std::size_t kFewestRuns = 3;     // of which there is a skewness
-constexpr double kLeastSkewness = 1e-6;    // below, the transformation is the identity
-constexpr double kMostDeviations = 1e100;  // of a mean of runs that do not differ
-constexpr double kRounding = 1e-9;         // of a mean that is zero
+constexpr std::size_t kFewestRuns = 3;     // fewest runs that have a skewness
+constexpr double kLeastSkewness = 1e-6;    // below this skewness the transformation is the identity
+constexpr double kMostDeviations = 1e100;  // limit for means of runs that hardly differ
+constexpr double kRounding = 1e-9;         // rounding error of a mean that is zero
 
-/// A sample of `n` hardly ever holds the tail that makes a law skewed, so that its skewness is too
-/// small. It is also uncertain; this is its standard error for normal values, which is added or
-/// taken away on the side on which fewer means are rejected.
+/// Corrections of the skewness of a sample. It is too small, since a sample of `n` hardly ever
+/// holds the tail that makes a law skewed: inflation() multiplies it. It is also uncertain: its
+/// standard error for normal values is added or subtracted on the side on which fewer means are
+/// rejected.
 double inflation(double n) { return 1.0 + 1.0 / std::sqrt(n); }
 double standard_error_of_skewness(double n) { return std::sqrt(6.0 / n); }
 
@@ -47,9 +48,9 @@ RunMean RunMean::in_units_of(double unit, double offset) const {
   return scaled;
 }
 
-// Hall's transformation, ((1 + g x / 3)^3 - 1) / g + g / (6 n), is flat where 1 + g x / 3 is 0; it
+// Hall's transformation, ((1 + g x / 3)^3 - 1) / g + g / (6 n), is flat where 1 + g x / 3 is 0. It
 // ends there, since a sample that far on the side of its short tail says nothing about the long
-// one.
+// tail.
 double RunMean::score(double expected) const {
   const auto n = static_cast<double>(runs_.n);
   const double difference = runs_.mean - expected;

@@ -11,20 +11,20 @@ namespace montecarta::analysis {
 /// 54, 1992; STATISTICS 5). Runs are independent; nothing is assumed about the errors within a run.
 class RunMean {
  public:
-  /// Of a mean of squared errors by what is claimed, which is skewed to the right at least as much
-  /// as the gamma distribution of its mean and deviation. `common_skewness` is that of all scans
-  /// together, where the number is one of a scan.
+  /// Judges a mean of squared errors divided by the reported variances. It is skewed to the right
+  /// at least as much as the gamma distribution with its mean and deviation. `common_skewness` is
+  /// the skewness over all scans together, if the number belongs to one scan.
   static RunMean of_ratio(const Summary& runs, double common_skewness = 0.0);
-  /// Of a mean of products, which may be skewed to either side.
+  /// Judges a mean of products, which may be skewed to either side.
   static RunMean of_product(const Summary& runs);
-  /// Of a number with a symmetric distribution, by Student's t as it is.
+  /// Judges a number with a symmetric distribution, by Student's t without correction.
   static RunMean of_symmetric(const Summary& runs);
 
   double mean() const { return runs_.mean; }
-  /// The law of the same number less `offset`, in units of `unit`, which is above zero.
+  /// The law of (number - `offset`) / `unit`, where `unit` is above zero.
   RunMean in_units_of(double unit, double offset = 0.0) const;
-  /// Two-sided p-value of the expectation `expected`; 1 of fewer than three runs. A ratio is also
-  /// rejected if even one that is kFar times nearer to the expected one would be, by the law of one
+  /// Two-sided p-value of the expectation `expected`; 1 for fewer than three runs. A ratio is also
+  /// rejected if a ratio kFar times nearer to `expected` would be rejected by the law of one
   /// Gaussian error that never changes within a run.
   double p_value(double expected) const;
   static constexpr double kFar = 4.0;
@@ -43,7 +43,8 @@ class RunMean {
   double expectation_at(double score) const;
 
   Summary runs_;
-  double skewness_above_, skewness_below_;  ///< of a run, for a mean above and below the expected
+  /// Skewness of one run, for means above and below the expected one.
+  double skewness_above_, skewness_below_;
   bool is_ratio_;
 };
 

@@ -12,11 +12,12 @@
 namespace montecarta::analysis {
 namespace {
 
-constexpr double kLeastOctave = -16.0, kStepsPerOctave = 8.0;  // of the chi-square
-constexpr double kMostInverse = 0.5;  // of 1 / freedom, whose steps begin at 0
-constexpr double kLastTail = 1e-6;    // beyond, an ideal sampler hardly ever is
+constexpr double kLeastOctave = -16.0, kStepsPerOctave = 8.0;  // log2 of the chi-square
+constexpr double kMostInverse = 0.5;  // largest 1 / freedom; the steps begin at 0
+constexpr double kLastTail = 1e-6;    // tail in which an ideal sampler hardly ever lies
 
-/// d F / chi-square of the same probability, F with d and 1 / `inverse` degrees of freedom.
+/// d F divided by the chi-square of the same probability, where F has d and 1 / `inverse` degrees
+/// of freedom.
 double f_ratio(double chi_square, double d, double inverse) {
   if (inverse == 0.0) return 1.0;
   const boost::math::fisher_f ideal(d, 1.0 / inverse);
@@ -68,7 +69,8 @@ bool SamplerScale::can_judge(const EffectiveDraws& draws) const {
 
 SamplerScale::Line SamplerScale::line(const EffectiveDraws& draws) const {
   expect(can_judge(draws), "enough draws to be judged by their spread");
-  const double E = draws.of_mean, freedom = draws.of_variance - dimension_;  // second of the F
+  // `freedom` is the second number of degrees of freedom of F.
+  const double E = draws.of_mean, freedom = draws.of_variance - dimension_;
   const double place = std::min(1.0 / (freedom * kMostInverse), 1.0) * kFreedoms;
   const auto step = std::min(static_cast<std::size_t>(place), kFreedoms - 1);
   Line line;
@@ -84,7 +86,7 @@ SamplerScale::Line SamplerScale::line(const EffectiveDraws& draws) const {
 
 double SamplerScale::shown_ratio(double ratio, const EffectiveDraws& draws) const {
   const Line line = this->line(draws);
-  double sum = 0.0, above = 1.0;  // above the column
+  double sum = 0.0, above = 1.0;  // `above` is the probability above the column
   for (std::size_t column = 0; column + 1 < columns_; ++column) {
     const double next = chi_squared_tail(std::exp2(octave_of(column + 1)), dimension_);
     const double log_f = 0.5 * (line.log_f_at(column) + line.log_f_at(column + 1));
@@ -100,7 +102,7 @@ double SamplerScale::Line::operator()(double nees) const {
   const double log_f = std::log2(f);
   if (log_f >= log_f_at(last_)) return f * beyond_;
   if (log_f <= log_f_at(0)) return f * std::exp2(first_octave_ - log_f_at(0));
-  // Where f would lie if the ratio were 1 is near where it lies.
+  // The search begins where f would lie if the ratio were 1.
   const double near = std::max((log_f - first_octave_) * kStepsPerOctave, 0.0);
   std::size_t below = std::min(static_cast<std::size_t>(near), last_ - 1);
   while (log_f_at(below) > log_f) --below;

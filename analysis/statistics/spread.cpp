@@ -14,8 +14,8 @@ bool any_is_nan(std::span<const double> values) {
   return std::ranges::any_of(values, [](double value) { return std::isnan(value); });
 }
 
-// Simulated so that of each distribution of heavy_tail_test.cpp at most 7 % of all samples are not
-// said to have a heavy tail and have an interval that misses the mean.
+// These limits come from simulations: of each distribution of heavy_tail_test.cpp, at most 7 % of
+// all samples are not said to have a heavy tail and yet have an interval that misses the mean.
 constexpr double kMostAcceleration = 0.05, kMostLopsided = 4.0, kOuterShare = 0.1;
 
 /// Interpolated quantile of sorted values: p = 0 is the least one, p = 1 the greatest.
@@ -26,8 +26,8 @@ double quantile_between(const std::vector<double>& sorted, double p) {
   return std::lerp(sorted[low], sorted[high], place - std::floor(place));
 }
 
-/// The longer by the shorter of the ways from the median to the outer tenths; 0 of values that are
-/// mostly the same.
+/// The longer of the two distances from the median to the outer tenths, divided by the shorter; 0
+/// if most values are equal.
 double lopsidedness(std::vector<double> values) {
   std::ranges::sort(values);
   const double median = quantile_between(values, 0.5);
@@ -61,7 +61,7 @@ double median_of(std::vector<double> values) {
 Interval median_interval(const std::vector<double>& sorted, double level) {
   const boost::math::binomial below(static_cast<double>(sorted.size()), 0.5);
   double outside = 0.0;
-  std::size_t rank = 0;  // of the value at the lower end, counted from 1; 0: there is none
+  std::size_t rank = 0;  // rank of the value at the lower end, counted from 1; 0: there is none
   while (rank < sorted.size() / 2) {
     outside += 2.0 * boost::math::pdf(below, static_cast<double>(rank));
     if (outside > 1.0 - level) break;

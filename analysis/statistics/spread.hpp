@@ -39,11 +39,12 @@ inline double mean_of_finite(std::span<const double> values) {
   return sum / n;
 }
 
-/// A number of every run, over runs.
+/// Summary over runs of a number that each run has.
 struct Summary {
   std::size_t n = 0;
   double mean = std::numeric_limits<double>::quiet_NaN();
-  double sd = std::numeric_limits<double>::quiet_NaN();  ///< of one run, with n - 1
+  /// Standard deviation of one run, with n - 1.
+  double sd = std::numeric_limits<double>::quiet_NaN();
   /// Third standardised moment of one run, corrected for the number of runs; 0 if all values are
   /// equal, NaN below three values.
   double skewness = std::numeric_limits<double>::quiet_NaN();
@@ -58,7 +59,8 @@ struct Summary {
   }
 };
 
-/// Adds up a Summary in the order of the calls (Welford), ignoring nothing: a NaN stays a NaN.
+/// Adds up values to a Summary in the order of the calls (Welford). No value is ignored: after a
+/// NaN the results are NaN.
 class SummaryOf {
  public:
   void add(double value) {
@@ -68,7 +70,7 @@ class SummaryOf {
     mean_ += step;
     squares_ += before * (value - mean_);
   }
-  /// Adds the sums over values behind these (Chan, Golub and LeVeque 1979; Pebay 2008).
+  /// Adds the sums over the values that follow (Chan, Golub and LeVeque 1979; Pebay 2008).
   void merge(const SummaryOf& next) {
     if (next.n_ == 0) return;
     if (n_ == 0) {
@@ -91,15 +93,16 @@ class SummaryOf {
  private:
   std::size_t n_ = 0;
   double mean_ = 0.0;
-  double squares_ = 0.0;  ///< of deviations from the mean
-  double cubes_ = 0.0;    ///< likewise
+  double squares_ = 0.0;  ///< sum of squared deviations from the mean
+  double cubes_ = 0.0;    ///< sum of cubed deviations from the mean
 };
 
 /// The summary of `values`, added in their order.
 Summary summary_of(std::span<const double> values);
 
-/// A number of every run, over runs, if few runs may lie far from the others: runs on a recorded
-/// drive differ by the filter's randomness alone, and one that loses the map spoils the mean.
+/// Summary over runs of a number that each run has, for studies in which few runs may lie far from
+/// the others: runs on a recorded drive differ by the filter's randomness alone, and one that loses
+/// the map spoils the mean.
 struct Spread {
   Summary summary;
   double median = std::numeric_limits<double>::quiet_NaN();
@@ -107,13 +110,14 @@ struct Spread {
   double greatest = median;
 };
 
-/// The middle value, the mean of the middle two of an even number; NaN of none or of any NaN.
+/// The median: the middle value, or the mean of the middle two. NaN without values or if one is
+/// NaN.
 double median_of(std::vector<double> values);
 
-/// Interval between two of the `sorted` values that holds the median over infinitely many with a
-/// probability of at least `level`, by order statistics: no distribution is assumed. NaN if there
-/// are too few values for that: all n of them hold it with the probability 1 - 2^(1 - n), which is
-/// below 95 % for fewer than six values.
+/// Interval between two of the `sorted` values that holds the median over infinitely many values
+/// with a probability of at least `level`, by order statistics: no distribution is assumed. NaN if
+/// there are too few values: the range of n values holds the median with the probability 1 - 2^(1 -
+/// n), which is below 95 % for fewer than six values.
 Interval median_interval(const std::vector<double>& sorted, double level);
 
 /// Spread of `values` in the order of the runs. NaN, except their number, if one of them is NaN.
@@ -130,11 +134,11 @@ struct SampleShape {
 /// equal.
 SampleShape shape_of(std::span<const double> values);
 
-/// Whether the values have such a heavy tail that no interval of their mean is valid (STATISTICS
-/// 6): a single value may decide the mean, or values of that size may not have been drawn yet. True
-/// for nearly all samples of a log-normal with a deviation of 1.5, for half of the samples of 20
-/// and 7 % of the samples of 100 of an exponential; never for fewer than three values, for equal
-/// ones, or if one is not finite.
+/// Returns whether the values have such a heavy tail that no interval of their mean is valid
+/// (STATISTICS 6): a single value may decide the mean, or values of that size may not have been
+/// drawn yet. True for nearly all samples of a log-normal distribution with a deviation of 1.5; for
+/// half of the samples of size 20, and 7 % of those of size 100, of an exponential distribution;
+/// never for fewer than three values, for equal values, or if a value is not finite.
 bool is_heavy_tailed(std::span<const double> values);
 
 }  // namespace montecarta::analysis

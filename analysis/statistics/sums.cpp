@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t kShortestRepetition = 4;
 constexpr std::size_t kMostWords = std::size_t{1} << 28U;  // 2 GB, far more than a group has
 
-/// Number of words at the beginning that are equal.
+/// Number of equal words at the beginning.
 std::size_t repetition(std::span<const std::uint64_t> words) {
   const auto other = std::ranges::find_if(words, [&](auto word) { return word != words.front(); });
   return static_cast<std::size_t>(other - words.begin());
@@ -35,8 +35,8 @@ void SumReader::expect(bool condition) {
   throw StudyError("its sums are damaged: take a copy that is whole, or run the study again");
 }
 
-// A stretch is twice its number of words, and 1 more if it is a repetition, then the words, or the
-// word that is repeated.
+// Each stretch begins with twice its number of words, plus 1 if it is a repetition. Its words
+// follow, or the one word that is repeated.
 Words packed(std::span<const std::uint64_t> words) {
   Words all;
   while (!words.empty()) {

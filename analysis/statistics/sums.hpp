@@ -16,43 +16,43 @@
 #include <utility>
 #include <vector>
 
-/// Sums over runs: how those of two blocks of runs become one, and how they are stored as 64-bit
-/// words. A class of sums names its members once, by what they are:
+/// Sums over runs, which are merged from blocks of runs and stored as 64-bit words. A class of sums
+/// lists its members once, each with its rule:
 ///
 ///     static constexpr auto parts() {
 ///       return std::tuple(added(&Sums::squares_, &Sums::runs_), appended(&Sums::values_));
 ///     }
 ///
-/// A member that is named nowhere is neither merged nor stored: memory for one run, or what the
-/// constructor knows. A plain aggregate of numbers names all of its members instead:
+/// A member that is not listed is neither merged nor stored: working memory of one run, or a value
+/// that the constructor sets. A plain aggregate of numbers lists all of its members instead:
 ///
 ///     static constexpr auto members() { return std::tuple(&Mean::sum, &Mean::n); }
 namespace montecarta::analysis {
 
-/// Merges `next`, the sums over the runs that come behind those of `sums`: by the parts or the
-/// merge() of a class, arrays element by element, numbers by addition. What only one of them has
-/// stays as it is. `next` is used up: values of runs are moved, since threads wait for a merge.
+/// Merges `next`, the sums over the runs that follow those of `sums`: a class by its parts or its
+/// merge(), arrays element by element, numbers by addition. A value that only one of the two has is
+/// kept. `next` is used up: values of runs are moved, since threads wait for a merge.
 template <class T>
 void merge_into(T& sums, T& next);
 
-/// Members of a class of sums with one rule, `merge`, by which those of two blocks become one.
+/// Members of a class of sums with one rule, `merge`, that combines those of two blocks.
 template <class Merge, class... Members>
 struct Part {
   Merge merge;
   std::tuple<Members...> members;  ///< pointers to members
-  bool of_first_runs = false;      ///< kept of the first runs of a study alone
+  bool of_first_runs = false;      ///< whether they are kept for the first runs of a study only
 };
 template <class Merge, class... Members>
 Part(Merge, std::tuple<Members...>, bool = false) -> Part<Merge, Members...>;  // for clang 14
 
-/// Sums, which are merged themselves.
+/// Members that are sums: merge_into() combines them.
 template <class... Members>
 constexpr auto added(Members... members) {
   return Part{[=](auto& sums, auto& next) { (merge_into(sums.*members, next.*members), ...); },
               std::tuple(members...)};
 }
 
-/// Settings, which are the same in all blocks, and stored where sums are stored.
+/// Members that are settings: they are equal in all blocks, and stored with the sums.
 template <class... Members>
 constexpr auto settings(Members... members) {
   return Part{[](auto&, auto&) {}, std::tuple(members...)};
@@ -69,14 +69,15 @@ void append(std::vector<std::vector<T>>& lists, std::vector<std::vector<T>>& nex
   for (std::size_t k = 0; k < lists.size(); ++k) append(lists[k], next[k]);
 }
 
-/// Values of each run, or several lists of them.
+/// Members that hold values of each run, or several lists of them: those of `next` are appended.
 template <class... Members>
 constexpr auto appended(Members... members) {
   return Part{[=](auto& sums, auto& next) { (append(sums.*members, next.*members), ...); },
               std::tuple(members...)};
 }
 
-/// Values or lists of the first runs, at most as many as the member function `most` says.
+/// Members that hold values or lists of the first runs, at most as many as the member function
+/// `most` returns.
 template <class Most, class... Members>
 constexpr auto appended_up_to(Most most, Members... members) {
   return Part{[=](auto& sums, auto& next) {
@@ -90,7 +91,7 @@ constexpr auto appended_up_to(Most most, Members... members) {
               std::tuple(members...), true};
 }
 
-/// What the first run says that has it: an optional.
+/// Optional members that keep the value of the first run that has one.
 template <class... Members>
 constexpr auto of_first_run(Members... members) {
   return Part{[=](auto& sums, auto& next) {
@@ -99,7 +100,7 @@ constexpr auto of_first_run(Members... members) {
               std::tuple(members...)};
 }
 
-/// Vectors and arrays.
+/// True for vectors and arrays.
 template <class T>
 inline constexpr bool kIsList = false;
 template <class T>
@@ -155,7 +156,7 @@ concept Growing = requires(T list) {
 /// Writes sums.
 class SumWriter {
  public:
-  /// Which of the members are written that are kept of the first runs of a study alone.
+  /// Whether members that are kept for the first runs of a study only are written.
   enum class FirstRuns : std::uint8_t { keep, leave_out };
   explicit SumWriter(FirstRuns first_runs) : first_runs_(first_runs) {}
 
@@ -176,7 +177,8 @@ class SumWriter {
     } else {
       for_each_member<T>([&](auto member, bool of_first_runs) {
         const bool is_left_out = of_first_runs && first_runs_ == FirstRuns::leave_out;
-        is_left_out ? words_.push_back(0) : put(value.*member);  // an empty vector
+        // Writes the length of an empty vector.
+        is_left_out ? words_.push_back(0) : put(value.*member);
       });
     }
   }
@@ -189,7 +191,7 @@ class SumWriter {
 };
 
 /// Reads sums that a SumWriter wrote. Throws StudyError if the words end too early, or if a number
-/// is none of its type.
+/// does not fit its type.
 class SumReader {
  public:
   explicit SumReader(std::span<const std::uint64_t> words) : words_(words) {}
@@ -264,9 +266,10 @@ struct SumLayout {
   }
 };
 
-/// The same words with repetitions written once: numbers that do not apply are NaN in every run.
+/// Compresses words by writing repetitions once, since numbers that do not apply are NaN in every
+/// run.
 Words packed(std::span<const std::uint64_t> words);
-/// Undoes packed(). Throws StudyError if the words are none that packed() wrote.
+/// Undoes packed(). Throws StudyError if packed() did not write the words.
 Words unpacked(std::span<const std::uint64_t> words);
 
 }  // namespace montecarta::analysis

@@ -13,7 +13,7 @@
 namespace montecarta::analysis {
 namespace {
 
-/// Probability of at most `count` of `values` at or below the point.
+/// Probability that at most `count` of `values` are at or below the point.
 double probability_up_to(std::size_t count, std::size_t values, std::size_t point) {
   const boost::math::binomial law(static_cast<double>(values), ecdf_point(point));
   return boost::math::cdf(law, static_cast<double>(count));
@@ -39,8 +39,8 @@ Increments poisson_increments(std::size_t values) {
   return found;
 }
 
-/// Counts of uniform values are those of a Poisson process given its total. The recursion follows
-/// the count from point to point, through paths that stay within the band.
+/// Counts of uniform values are distributed as those of a Poisson process given its total. The
+/// recursion follows the count from point to point, through paths that stay within the band.
 double joint_probability(const EcdfBand& band) {
   const std::size_t n = band.values;
   const Increments step = poisson_increments(n);
@@ -63,11 +63,12 @@ double joint_probability(const EcdfBand& band) {
   return now[n] / boost::math::pdf(boost::math::poisson(total), total);
 }
 
-/// The band that the count at each point leaves with probability `tail` at most on either side.
+/// The band that the count at each point leaves on either side with a probability of at most
+/// `tail`.
 EcdfBand band_with_tails(std::size_t values, double tail) {
   EcdfBand band{.values = values, .lower = {}};
   for (std::size_t point = 1; point < kEcdfSteps; ++point) {
-    std::size_t count = band.lower[point - 1], end = values;  // by bisection
+    std::size_t count = band.lower[point - 1], end = values;  // ends of the bisection
     while (count < end) {
       const std::size_t middle = count + (end - count) / 2;
       const bool is_below = probability_up_to(middle, values, point) <= tail;
@@ -80,7 +81,7 @@ EcdfBand band_with_tails(std::size_t values, double tail) {
   return band;
 }
 
-/// The least pointwise tail of the counts: bands with larger tails are left.
+/// The least pointwise tail of the counts, which leave every band with larger tails.
 double least_tail(const EcdfCounts& counts, std::size_t values) {
   double least = 1.0;
   for (std::size_t point = 1; point < kEcdfSteps; ++point) {
@@ -131,7 +132,8 @@ Calibration name_fault(const Uniformity& found, PitOf kind) {
 
 EcdfBand ecdf_band(std::size_t values, double level) {
   if (values == 0) return {};
-  // Bonferroni's inequality over all points, both sides; and the tails of one point alone.
+  // The tail that Bonferroni's inequality gives over all points and both sides, and the tail of one
+  // point alone.
   double inside = 0.5 * (1.0 - level) / static_cast<double>(kEcdfSteps - 1);
   double outside = 0.5 * (1.0 - level);
   EcdfBand best = band_with_tails(values, inside);
@@ -159,7 +161,8 @@ Uniformity judge_uniformity(std::span<const double> values, const EcdfBand& band
 double p_value(const Uniformity& test) {
   const std::size_t n = test.band.values;
   if (n < kLeastValues) return Uniformity::kNone;
-  constexpr double kLeastPointwiseTail = 1e-14;  // rounding of the joint probability is larger
+  // Below this, rounding of the joint probability is larger.
+  constexpr double kLeastPointwiseTail = 1e-14;
   const double tail = std::max(least_tail(test.counts, n), kLeastPointwiseTail);
   return std::clamp(1.0 - band_with_tails(n, tail).joint, 0.0, 1.0);
 }

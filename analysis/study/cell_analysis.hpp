@@ -24,7 +24,7 @@ namespace montecarta::analysis {
 /// A run that ended early.
 struct FailedRun {
   std::uint64_t run = 0;
-  std::uint32_t step = 0;  ///< 0-based
+  std::uint32_t step = 0;  ///< step at which the run ended, 0-based
   std::string reason;
 };
 
@@ -35,7 +35,7 @@ class Findings {
   void put(T result) {
     results_.insert_or_assign(typeid(T), std::move(result));
   }
-  /// nullptr where there is none.
+  /// The result of type T; nullptr if there is none.
   template <class T>
   const T* find() const {
     const auto found = results_.find(typeid(T));
@@ -46,26 +46,31 @@ class Findings {
   std::map<std::type_index, std::any> results_;
 };
 
-/// The analysis of one cell. Errors, NEES, weights and diversity are over complete runs only.
+/// The analysis of one cell. Errors, NEES, weights and diversity are those of complete runs only.
 struct CellAnalysis {
   std::string label;
   std::string filter;
   std::string long_name;
-  std::size_t particles = 0;  ///< 0: not a particle filter
+  std::size_t particles = 0;  ///< number of particles; 0 if it is not a particle filter
   std::size_t complete = 0;
   std::size_t missing = 0;
-  std::size_t spared = 0;         ///< not made: the cell was precise enough, or its verdict known
-  std::size_t looks_planned = 0;  ///< at its verdict, where cells stop by it, else 0
-  std::size_t looks_made = 0;     ///< of them
+  /// Number of runs not needed: the cell was precise enough, or its verdict known.
+  std::size_t spared = 0;
+  /// Number of planned interim analyses of its verdict; 0 if there are none.
+  std::size_t looks_planned = 0;
+  std::size_t looks_made = 0;  ///< number of interim analyses made
   std::vector<FailedRun> failures;
-  Verdict verdict;                         ///< on the whole error by the leading moments
-  Moments leading = Moments::spread;       ///< of the verdict: the first of kMoments there is
-  std::vector<NeesResult> nees;            ///< leading first; pose, position, heading; may be empty
-  std::vector<std::uint64_t> runs;         ///< numbers of the complete runs, increasing
-  ScoreTable scores;                       ///< of each of them
-  std::vector<Interval> score_intervals;   ///< {score} of the mean over infinitely many runs
-  std::vector<Frame::Column> scan_series;  ///< of all_scan_series() those that apply
-  Findings findings;                       ///< all else, by the metric's own type
+  Verdict verdict;  ///< verdict on the whole error by the leading moments
+  /// Moments of the verdict: the first of kMoments that is stored.
+  Moments leading = Moments::spread;
+  /// Leading moments first, each with pose, position and heading; may be empty.
+  std::vector<NeesResult> nees;
+  std::vector<std::uint64_t> runs;  ///< numbers of the complete runs, increasing
+  ScoreTable scores;                ///< {complete run} scores
+  /// {score} interval of the mean over infinitely many runs.
+  std::vector<Interval> score_intervals;
+  std::vector<Frame::Column> scan_series;  ///< those of all_scan_series() that apply
+  Findings findings;                       ///< all other results, by the type of the metric
 
   /// The result of a metric; nullptr where it does not apply.
   template <class T>
@@ -79,15 +84,16 @@ struct CellAnalysis {
     const T* found = find<T>();
     return found != nullptr ? *found : none;
   }
-  /// nullptr where it is not stored.
+  /// The NEES of a block by these moments; nullptr if it is not stored.
   const NeesResult* find_nees(ErrorBlock block, Moments moments) const;
-  /// A score over the complete runs; NaN if one of them has no value.
+  /// Summary of a score over the complete runs; NaN if one of them has no value.
   Summary over_runs(std::string_view score) const;
-  /// A score over the complete runs that have a value: a map without beacons has no beacon error.
+  /// Summary of a score over the complete runs that have a value: a map without beacons has no
+  /// beacon error.
   Spread known_over_runs(std::string_view score) const;
   /// The interval that holds the mean of a score over infinitely many runs.
   Interval interval_of(std::string_view score) const;
-  /// {scan} of this name; empty where it does not apply.
+  /// {scan} The series of this name; empty if it does not apply.
   const std::vector<double>& over_time(std::string_view series) const;
 };
 

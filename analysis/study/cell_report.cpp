@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kMostCurves = 8;
 
-/// A cell that is drawn.
+/// A cell that has a curve.
 struct DrawnCurve {
   const CellAnalysis* cell;
   Curve curve;
@@ -48,8 +48,8 @@ std::vector<std::string> filter_labels(const StudyAnalysis& study) {
   return labels;
 }
 
-/// A curve for every filter, so that one legend serves all panels; without values where a filter
-/// has no cell of so many particles.
+/// A panel with a curve for every filter, so that one legend serves all panels; a curve has no
+/// values if its filter has no cell with this number of particles.
 Panel panel_of(std::size_t particles, const std::vector<DrawnCurve>& drawn,
                const std::vector<std::string>& filters, const Panel& blank) {
   Panel panel = blank;

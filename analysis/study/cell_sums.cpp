@@ -15,7 +15,9 @@
 namespace montecarta::analysis {
 namespace {
 
-/// Fills CellAnalysis::score_intervals by one bootstrap over runs at `level`.
+/// Fills CellAnalysis::score_intervals, and NeesResult::average_interval of every NEES from its
+/// runs. All share one bootstrap over runs at `level`; NEES in which some runs are not judged have
+/// one over the judged runs.
 void put_score_intervals(CellAnalysis& cell, double level) {
   std::vector<std::vector<double>> columns;
   for (const Score& score : all_scores()) columns.push_back(cell.scores.column(score.name));
@@ -112,7 +114,7 @@ struct RunBlock {
   bool ends_group;
 };
 
-/// The number of the first runs that are of one block.
+/// The number of runs, from the first on, that belong to one block.
 std::size_t runs_of_block(std::span<const std::uint64_t> numbers) {
   const std::uint64_t end = (numbers.front() / engine::kRunsOfAGroup + 1) * engine::kRunsOfAGroup;
   const auto of_group = std::ranges::lower_bound(numbers, end) - numbers.begin();

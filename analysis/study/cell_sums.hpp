@@ -20,7 +20,7 @@
 
 namespace montecarta::analysis {
 
-/// Adds up a number of every scan over runs of the same scans.
+/// Averages a number of every scan over runs that have the same scans.
 class MeanOverTime {
  public:
   void add(const std::vector<double>& values);
@@ -35,27 +35,27 @@ class MeanOverTime {
   double runs_ = 0.0;
 };
 
-/// Adds up complete runs of one cell, or of a block of them, in the order of the calls. Memory
-/// depends on scans, and grows by a few numbers with every run.
+/// Adds up complete runs of one cell, or of one block, in the order of the calls. Memory depends on
+/// scans, and grows by a few numbers with every run.
 class CellSums {
  public:
-  /// `criteria` must outlive it.
+  /// `criteria` must outlive the sums.
   explicit CellSums(const RunCriteria& criteria);
 
   void add(const MeasuredRun& run);
-  /// Adds the sums over the runs that follow these, which are used up.
+  /// Adds the sums over the runs that follow; `next` is used up.
   void merge(CellSums&& next);
-  /// Processor times are NaN in the words, since they are no function of the study.
+  /// Writes the sums. Processor times are written as NaN, since they are no function of the study.
   void write(SumWriter& words) const;
   void read(SumReader& words);
-  /// What the words are: names of scores and series, kinds of numbers.
+  /// The layout of the words: names of scores and series, kinds of numbers.
   std::string layout() const;
   /// Scores of the runs so far.
   const ScoreTable& scores() const { return scores_; }
   void put_cpu_seconds(std::vector<double> of_runs) {
     scores_.put("cpu_seconds", std::move(of_runs));
   }
-  /// Fills all that complete runs say; label, failures and missing runs are there already.
+  /// Fills the results of complete runs; label, failures and missing runs are there already.
   void put(CellAnalysis& cell);
 
  private:
@@ -63,22 +63,21 @@ class CellSums {
 
   double level_;
   ScoreTable scores_;
-  /// One for each of all_scan_series(); none if runs are drives of their own, since their scans are
-  /// at other times.
+  /// {all_scan_series()} means; empty if runs are drives of their own, since their scans are at
+  /// other times.
   std::vector<MeanOverTime> over_time_;
-  std::vector<std::unique_ptr<MetricSums>> metrics_;  ///< those that have any
+  std::vector<std::unique_ptr<MetricSums>> metrics_;  ///< sums of the metrics that have any
 };
 
-/// So many complete runs, one behind the other, are a block: one thread reads, measures and adds
-/// them up, and blocks are merged in their order. So sums have the same bits on any number of
-/// threads.
+/// Number of successive complete runs in a block: one thread reads, measures and adds them up, and
+/// blocks are merged in their order. So sums have the same bits on any number of threads.
 inline constexpr std::size_t kRunsOfABlock = 64;
 
 /// Complete runs of one cell, by their index in the file.
 struct CellRuns {
   const RunReader* reader;
   std::span<const std::size_t> runs;
-  std::span<const std::uint64_t> numbers;  ///< of these runs in the study
+  std::span<const std::uint64_t> numbers;  ///< numbers of these runs in the study
 };
 
 /// {cell} The sums over the runs of each cell. The blocks of a group of runs (kRunsOfAGroup) are
@@ -87,14 +86,14 @@ struct CellRuns {
 std::vector<CellSums> sums_of(std::span<const CellRuns> cells, const RunCriteria& criteria,
                               const Parallel& parallel);
 
-/// A score of each complete run among the first `runs` that a file holds of a cell, in their order;
-/// the file may be unfinished. The same for any number of threads.
+/// {complete run} A score of each complete run among the first `runs` runs that the file holds of a
+/// cell; the file may be unfinished. The result does not depend on the number of threads.
 std::vector<double> first_values(const ResultFile& file, const StoredCell& cell, const Score& score,
                                  std::size_t runs, const Parallel& parallel);
 
-/// Whether Student's interval reaches less than `wanted` to each side of the mean, and the values
-/// are such that it can be believed: values with a heavy tail look precise as long as none of the
-/// tail was drawn, and stopping then would make the mean too small.
+/// Returns whether Student's interval reaches less than `wanted` to each side of the mean, and the
+/// values have no heavy tail: such values look precise as long as none of the tail was drawn, and
+/// stopping then would make the mean too small.
 bool is_precise(const std::vector<double>& values, double level, double wanted);
 
 }  // namespace montecarta::analysis

@@ -10,13 +10,13 @@
 
 namespace montecarta::analysis {
 
-/// The bound divided by the error: 1 is as good as any filter without bias can be. NaN if there is
-/// no bound (a linearised reference is none) or no error.
+/// The bound divided by the error: 1 is the best that a filter without bias can reach. NaN if there
+/// is no bound (a linearised reference is none) or no error.
 struct Efficiency {
-  /// Root mean squares over scans, that of the error also over runs.
+  /// Ratios of root mean squares over scans; the error's is also over runs.
   double position = kNaN;
   double heading = kNaN;
-  /// For the landmarks in the map at the end; needs known association.
+  /// Ratio for the landmarks in the map at the end; needs known association.
   double map = kNaN;
 };
 

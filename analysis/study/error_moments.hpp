@@ -14,17 +14,18 @@
 
 namespace montecarta::analysis {
 
-/// Errors over runs beside the deviations that the filter reports, in the ErrorFrame: forward [m],
+/// Errors over runs and the deviations that the filter reports, in the ErrorFrame: forward [m],
 /// left [m], heading [rad].
 struct ErrorsOverTime {
-  std::array<std::vector<double>, 3> rms;       ///< {component}{scan} root mean square error
-  std::array<std::vector<double>, 3> believed;  ///< {component}{scan} root mean reported variance
-  std::array<std::vector<double>, 3> mean;      ///< {component}{scan} mean error
+  std::array<std::vector<double>, 3> rms;  ///< {component}{scan} root mean square error
+  /// {component}{scan} root of the mean reported variance.
+  std::array<std::vector<double>, 3> believed;
+  std::array<std::vector<double>, 3> mean;  ///< {component}{scan} mean error
 };
 
 /// The errors of one run and the deviations that the filter reports, in the same frame.
 struct ErrorTrace {
-  std::uint64_t run = 0;                         ///< its number in the study
+  std::uint64_t run = 0;                         ///< number of the run in the study
   std::array<std::vector<double>, 3> error;      ///< {component}{scan}
   std::array<std::vector<double>, 3> deviation;  ///< {component}{scan}
   static constexpr auto members() {
@@ -32,7 +33,7 @@ struct ErrorTrace {
   }
 };
 
-/// The trace of run number `run`; both {scan}, in the ErrorFrame.
+/// The trace of run number `run`; `errors` and `covariances` are {scan} in the ErrorFrame.
 ErrorTrace error_trace(std::uint64_t run, std::span<const Eigen::Vector3d> errors,
                        std::span<const Eigen::Matrix3d> covariances);
 
@@ -41,8 +42,8 @@ class ErrorMoments {
  public:
   explicit ErrorMoments(std::size_t scans) : scans_(scans) {}
 
-  /// Adds one run, {scan}, both in the ErrorFrame. Scans with an error or a covariance that is
-  /// not finite are left out.
+  /// Adds one run; `errors` and `covariances` are {scan} in the ErrorFrame. Scans with an error or
+  /// a covariance that is not finite are left out.
   void add(std::span<const Eigen::Vector3d> errors, std::span<const Eigen::Matrix3d> covariances);
   ErrorsOverTime result() const;
   static constexpr auto parts() { return std::tuple(added(&ErrorMoments::scans_)); }

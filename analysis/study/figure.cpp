@@ -31,7 +31,8 @@ std::array<double, 2> extremes(std::span<const double> values) {
 }
 
 constexpr std::size_t kBuckets = 240;
-constexpr double kBelowBand = 0.3, kAboveBand = 1e5;  // where the axis ends at the latest
+// Farthest ends of the axis, relative to the band.
+constexpr double kBelowBand = 0.3, kAboveBand = 1e5;
 constexpr double kLogarithmicFrom = 30.0, kDecade = 10.0, kRoom = 1.05;
 
 struct Range {
@@ -40,7 +41,7 @@ struct Range {
 };
 
 /// Range of all positive values of a panel, bands included; limited to the surroundings of the
-/// bands if there are any. A decade from 1 without positive values.
+/// bands if there are any. Without positive values it is a decade from 1.
 Range range_of(const Panel& panel) {
   Range range;
   const auto include = [&](double value) {
@@ -58,7 +59,7 @@ Range range_of(const Panel& panel) {
   return range;
 }
 
-/// All that is drawn is near zero, on one side or the other.
+/// An axis that extends equally far below and above zero.
 ChartAxis around_zero(const Panel& panel) {
   double farthest = 0.0;
   for (const Curve& curve : panel.curves) {
@@ -73,7 +74,8 @@ ChartAxis around_zero(const Panel& panel) {
   return {false, -end, end};
 }
 
-/// Logarithmic: whole decades, near a band no farther than the range itself.
+/// The vertical axis of a panel. A logarithmic one has whole decades, or the range itself if there
+/// are bands.
 ChartAxis axis_of(const Panel& panel) {
   if (panel.scale == Scale::around_zero) return around_zero(panel);
   const Range range = range_of(panel);
@@ -88,7 +90,7 @@ ChartAxis axis_of(const Panel& panel) {
   return {true, std::pow(10.0, from), std::pow(10.0, to)};
 }
 
-/// An envelope follows its curve.
+/// The curves of a panel, thinned; an envelope comes after its curve.
 Frame thinned(const Panel& panel, const std::vector<double>& places, const std::string& x_label) {
   Frame frame{{{x_label, "1", places}}};
   for (const Curve& curve : panel.curves) {

@@ -64,7 +64,7 @@ void write_in_place(const std::filesystem::path& path, const std::string& text) 
   if (!out) cannot_write(path);
 }
 
-/// A pipe would be waited for, a device written to.
+/// Throws StudyError if `path` is a pipe, which would block, or a device.
 const std::filesystem::path& not_special(const std::filesystem::path& path) {
   if (!std::filesystem::exists(path) || std::filesystem::is_regular_file(path)) return path;
   throw StudyError(path.string() +

@@ -11,7 +11,7 @@ double ancestors_ago(const LineageSummary& found) {
   return found.ancestors[kLag];
 }
 
-/// In words where all runs have one.
+/// Text of the age of the common ancestor; "-" if there is none.
 std::string common_ancestor_text(double coalescence) {
   return std::isfinite(coalescence) ? readable(coalescence) + " s" : "-";
 }

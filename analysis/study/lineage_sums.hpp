@@ -12,11 +12,12 @@
 
 namespace montecarta::analysis {
 
-/// Ancestries over runs (Lineages).
+/// Means over runs of Lineages.
 struct LineageSummary {
-  std::array<double, kLineageLags.size()> ancestors{};  ///< {lag} mean over runs; NaN: too short
-  double coalescence = kNaN;      ///< [s] mean over the runs that have a common ancestor
-  double coalesced_share = kNaN;  ///< of the scans looked at
+  /// {lag} mean over runs; NaN if all runs are too short.
+  std::array<double, kLineageLags.size()> ancestors{};
+  double coalescence = kNaN;      ///< [s] mean over the runs with a common ancestor
+  double coalesced_share = kNaN;  ///< share of the scans from which the ancestry is followed
   /// Share of the mean squared position error that comes from the small number of particles; NaN if
   /// particles are not stored.
   double monte_carlo_share = kNaN;
@@ -46,7 +47,7 @@ class LineageSums {
   Mean coalescence_, coalesced_, variance_, squared_error_;
 };
 
-/// Ancestries of a cell as numbers of files and of a table.
+/// Columns of files and of a table for the ancestries of a cell.
 const std::vector<ResultNumber<LineageSummary>>& lineage_numbers();
 
 }  // namespace montecarta::analysis

@@ -15,31 +15,31 @@
 
 namespace montecarta::analysis {
 
-/// One landmark over the runs that have it in their map.
+/// Errors of one landmark over the runs that have it in their map.
 struct LandmarkErrors {
-  std::uint32_t runs = 0;       ///< with it in the map
-  std::uint32_t valid = 0;      ///< of them: with a finite NEES
-  double rms = kNaN;            ///< [m]
-  double anees = kNaN;          ///< [1] of two components
-  Interval bounds{kNaN, kNaN};  ///< of anees, by `valid`
+  std::uint32_t runs = 0;       ///< number of runs with the landmark in the map
+  std::uint32_t valid = 0;      ///< number of runs with a finite NEES
+  double rms = kNaN;            ///< [m] RMS error
+  double anees = kNaN;          ///< [1] average NEES of two components
+  Interval bounds{kNaN, kNaN};  ///< bounds of anees for `valid` runs
 };
 
-/// Final maps over the complete runs of a cell.
+/// Errors of the final maps of a cell over its complete runs.
 struct MapErrors {
-  std::size_t undefined = 0;              ///< landmarks, over all runs, that have no NEES
+  std::size_t undefined = 0;              ///< number of landmarks, over all runs, that have no NEES
   std::vector<LandmarkErrors> landmarks;  ///< {landmark}; empty where association is unknown
-  std::string missing = {};               ///< why there are no numbers; else empty
+  std::string missing = {};               ///< reason why there are no numbers; else empty
 
-  /// Share of the landmarks with a NEES that are inside their bounds; NaN if there are none.
+  /// Share of the landmarks with a NEES whose anees is inside its bounds; NaN if there are none.
   double share_inside() const;
 };
 
 /// Adds up complete runs in the order of the calls.
 class MapErrorSums {
  public:
-  /// Adds a run; nullopt if its map is not stored or not whole.
+  /// Adds a run; `run` is nullopt if its map is not stored or not whole.
   void add(const std::optional<MapScores>& run);
-  /// `known`: whether the true positions of the landmarks are known.
+  /// The result at `level`; `known` is whether the true positions of the landmarks are known.
   MapErrors result(double level, bool known) const;
   static constexpr auto parts() {
     return std::tuple(added(&MapErrorSums::landmarks_, &MapErrorSums::n_runs_,

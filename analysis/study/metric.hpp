@@ -23,14 +23,14 @@ struct MeasuredRun;
 struct StudyAnalysis;
 struct RunCriteria;
 
-/// Adds up the complete runs of one cell, or of a block of them, in the order of the calls.
+/// Sums of one metric over the complete runs of a cell, or of a block, in the order of the calls.
 class MetricSums {
  public:
   virtual ~MetricSums() = default;
   virtual void add(const MeasuredRun& run) = 0;
-  /// Adds the sums of the same metric over the runs that follow these, which are used up.
+  /// Adds the sums of the same metric over the runs that follow; `next` is used up.
   virtual void merge(MetricSums& next) = 0;
-  /// The sums as words (sums.hpp), and their layout.
+  /// Writes the sums as words (sums.hpp), reads them, and names their layout.
   virtual void write(SumWriter& words) const = 0;
   virtual void read(SumReader& words) = 0;
   virtual void add_layout(std::string& text) const = 0;
@@ -39,7 +39,7 @@ class MetricSums {
   virtual void put(CellAnalysis& cell) = 0;
 };
 
-/// The base class of `Sums`, which has parts() (sums.hpp).
+/// The base class of a class of sums `Sums` that has parts() (sums.hpp).
 template <class Sums>
 class MergedSums : public MetricSums {
  public:
@@ -54,23 +54,23 @@ class MergedSums : public MetricSums {
 /// A CSV file of a study.
 struct TableFile {
   const char* name;
-  Frame (*of)(const StudyAnalysis& study);  ///< without columns: there is no file
+  Frame (*of)(const StudyAnalysis& study);  ///< contents; there is no file if they have no columns
 };
 
 /// A number of a result, described once: its columns in files, and its column in a table.
 template <class Result>
 struct ResultNumber {
-  std::string name;  ///< in files; empty: in the table alone
+  std::string name;  ///< name in files; empty: only in the table
   std::string units;
   std::function<double(const Result&)> value;
-  std::string heading = {};  ///< of the table; empty: in files alone
-  /// Text of the value in the table; empty: readable(). Not beside an interval.
+  std::string heading = {};  ///< heading in the table; empty: only in files
+  /// Text of the value in the table; readable() if it is empty. It is not used beside an interval.
   std::function<std::string(double)> text = {};
-  /// Of the value: NAME_lower and NAME_upper in files, and with_interval() in the table.
+  /// Interval of the value: NAME_lower and NAME_upper in files, and with_interval() in the table.
   std::function<Interval(const Result&)> interval = {};
 };
 
-/// Adds them to a row of a file; NaN where there is no result.
+/// Adds the numbers of a result to a row of a file; NaN if there is no result.
 template <class Result>
 void add_numbers(const std::vector<ResultNumber<Result>>& quantities, const Result* result,
                  Frame::Row& row) {
@@ -84,7 +84,7 @@ void add_numbers(const std::vector<ResultNumber<Result>>& quantities, const Resu
   }
 }
 
-/// Adds them to a row of a table, with intervals at `level`.
+/// Adds the numbers of a result to a row of a table, with intervals at `level`.
 template <class Result>
 void add_entries(const std::vector<ResultNumber<Result>>& quantities, const Result& result,
                  double level, std::vector<TextTable::Entry>& row) {
@@ -101,7 +101,7 @@ void add_entries(const std::vector<ResultNumber<Result>>& quantities, const Resu
   }
 }
 
-/// Metric::add_numbers of the quantities of a result that a cell may have.
+/// A function for Metric::add_numbers that adds the numbers of a result that a cell may have.
 template <class Result>
 auto numbers_by(const std::vector<ResultNumber<Result>>& quantities) {
   return [&quantities](const CellAnalysis& cell, Frame::Row& row) {
@@ -114,17 +114,18 @@ std::unique_ptr<MetricSums> make_sums(const RunCriteria& criteria) {
   return std::make_unique<Sums>(criteria);
 }
 
-/// Contributions of a metric; members that it does not need stay empty.
+/// Contributions of a metric to the analysis; those that it does not make stay empty.
 struct Metric {
-  std::span<const Score> scores = {};            ///< of a run
-  std::span<const ScanSeries> scan_series = {};  ///< of every scan of a run
+  std::span<const Score> scores = {};            ///< scores of a run
+  std::span<const ScanSeries> scan_series = {};  ///< series over the scans of a run
   /// Whether the means of the scores are written for every cell to cells.csv and HDF5.
   bool scores_are_numbers = true;
-  /// Sums for results beyond means of scores, e.g. make_sums<MySums>; `criteria` outlive the sums.
+  /// Makes sums for results beyond means of scores, e.g. make_sums<MySums>; `criteria` outlive the
+  /// sums.
   std::unique_ptr<MetricSums> (*sums)(const RunCriteria& criteria) = nullptr;
-  /// Adds single numbers: the same names for every cell, NaN where a number does not apply.
+  /// Adds single numbers: the same names for every cell, and NaN if a number does not apply.
   std::function<void(const CellAnalysis& cell, Frame::Row& all)> add_numbers = nullptr;
-  /// Adds series over scans; those that do not apply are absent.
+  /// Adds those series over scans that apply.
   void (*add_series)(const CellAnalysis& cell, std::vector<Frame::Column>& all) = nullptr;
   /// Sections of the report, with tables and notes.
   std::vector<Section> (*sections)(const StudyAnalysis& study) = nullptr;

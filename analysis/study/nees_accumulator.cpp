@@ -12,7 +12,7 @@
 namespace montecarta::analysis {
 namespace {
 
-/// Shares of scans outside the bounds of a scan.
+/// Fills the shares of scans whose average is outside the bounds.
 void count_shares(NeesResult& result) {
   const NeesSeries& series = result.series;
   double tested = 0.0, above = 0.0, below = 0.0;
@@ -79,12 +79,13 @@ NeesSeries NeesAccumulator::series(double level) const {
   series.runs = runs_;
   series.run_averages = run_averages_;
   series.unjudged_runs = unjudged_runs_;
-  std::map<std::uint32_t, Interval> bounds;  // by the runs of a scan: nearly always the same number
+  // Bounds by number of runs, which is nearly the same at all scans.
+  std::map<std::uint32_t, Interval> bounds;
   for (std::size_t s = 0; s < sum_.size(); ++s) {
     const auto [found, is_new] = bounds.try_emplace(runs_[s]);
     if (is_new && runs_[s] > 0) found->second = nees_bounds(runs_[s], dimension_, level);
     series.bounds.push_back(found->second);
-    series.average.push_back(sum_[s] / runs_[s]);  // NaN where no run is valid
+    series.average.push_back(sum_[s] / runs_[s]);  // NaN if no run is valid
   }
   return series;
 }

@@ -14,20 +14,21 @@
 
 namespace montecarta::analysis {
 
-/// Adds up the NEES of one block by one definition over runs. Memory depends on the scans, and
-/// grows by one number with every run.
+/// Adds up the NEES of one block by one definition of the moments over runs. Memory depends on the
+/// scans, and grows by one number with every run.
 class NeesAccumulator {
  public:
-  NeesAccumulator() = default;  ///< to be read
-  /// `dimension`: components of the block; 0: those of a pose in the plane.
+  NeesAccumulator() = default;  ///< empty sums, to be filled by a SumReader
+  /// `dimension` is the number of components of the block; 0: that of a pose in the plane.
   NeesAccumulator(ErrorBlock block, Moments moments, std::size_t scans, std::size_t dimension = 0);
   Moments moments() const { return moments_; }
   void add(const RunMetrics& metrics);
-  /// The NEES {scan} of a run, NaN if it is unusable, with the `rank` {scan} of its covariances
-  /// (empty: full) and `too_few` {scan}: 1 where too few draws were left to judge (empty: nowhere).
+  /// Adds a run: `value` {scan} is its NEES, NaN if it is unusable, `rank` {scan} that of its
+  /// covariances (empty: all full), and `too_few` {scan} is 1 where there were too few draws to
+  /// judge (empty: nowhere).
   void add(std::span<const double> value, std::span<const int> rank = {},
            std::span<const std::uint8_t> too_few = {});
-  /// `level` of the bounds.
+  /// The result; `level` is that of the bounds.
   NeesResult result(double level) const;
   static constexpr auto parts() {
     using Sums = NeesAccumulator;
@@ -44,9 +45,9 @@ class NeesAccumulator {
   ErrorBlock block_ = ErrorBlock::pose;
   Moments moments_ = Moments::spread;
   std::size_t dimension_ = 0;
-  std::vector<double> sum_;           ///< {scan} of finite NEES
-  std::vector<std::uint32_t> runs_;   ///< {scan} in the sum
-  std::vector<double> run_averages_;  ///< {run that has any}
+  std::vector<double> sum_;           ///< {scan} sum of the finite NEES
+  std::vector<std::uint32_t> runs_;   ///< {scan} number of runs in the sum
+  std::vector<double> run_averages_;  ///< {run that has a NEES} average over its scans
   std::uint64_t samples_ = 0, lower_rank_ = 0, unusable_ = 0, too_few_ = 0, unjudged_runs_ = 0;
 };
 

@@ -12,19 +12,24 @@
 
 namespace montecarta::analysis {
 
-/// NEES of one definition of error and covariance over scans and runs.
+/// NEES of one definition of error and covariance over scans and runs. A run is valid at a scan if
+/// it is complete and its NEES there is finite.
 struct NeesSeries {
   std::size_t dimension = 0;
-  std::vector<double> average;       ///< {scan} over valid runs; NaN where there is none
-  std::vector<std::uint32_t> runs;   ///< {scan} valid: complete, with a finite NEES
-  std::vector<Interval> bounds;      ///< {scan} of the average of a consistent filter at that scan
-  std::vector<double> run_averages;  ///< {run} over its scans, of runs that have any NEES
-  std::uint64_t samples = 0;         ///< scans x complete runs
-  std::uint64_t lower_rank = 0;      ///< of them: judged in the range of a singular covariance
-  std::uint64_t unusable = 0;  ///< of them: error or covariance is not finite, or the covariance
-                               ///< not positive semidefinite; left out of the average
-  std::uint64_t too_few = 0;   ///< of them: too few effective draws to be judged, left out as well
-  std::uint64_t unjudged_runs = 0;  ///< complete runs without a NEES at any scan, left out as well
+  std::vector<double> average;      ///< {scan} mean NEES over the valid runs; NaN if there are none
+  std::vector<std::uint32_t> runs;  ///< {scan} number of valid runs
+  /// {scan} bounds of the average of a consistent filter at that scan.
+  std::vector<Interval> bounds;
+  std::vector<double> run_averages;  ///< {run with a NEES} mean over its scans
+  std::uint64_t samples = 0;         ///< number of samples: scans x complete runs
+  std::uint64_t lower_rank = 0;  ///< number of samples judged in the range of a singular covariance
+  /// Number of samples left out of the average because error or covariance is not finite, or
+  /// because the covariance is not positive semidefinite.
+  std::uint64_t unusable = 0;
+  /// Number of samples left out because there are too few effective draws.
+  std::uint64_t too_few = 0;
+  /// Number of complete runs without a NEES at any scan, left out.
+  std::uint64_t unjudged_runs = 0;
 };
 
 /// A NEES series in a few numbers.
@@ -32,10 +37,11 @@ struct NeesResult {
   ErrorBlock block = ErrorBlock::pose;
   Moments moments = Moments::spread;
   NeesSeries series;
-  double mean = kNaN;              ///< of series.run_averages
-  Interval average_interval = {};  ///< of the mean over infinitely many runs
-  double share_above = 0.0;        ///< of scans with a valid run: above the bounds of a scan
-  double share_below = 0.0;        ///< below them
+  double mean = kNaN;              ///< mean of series.run_averages
+  Interval average_interval = {};  ///< interval of the mean over infinitely many runs (bootstrap)
+  /// Share of the scans with a valid run whose average is above the bounds.
+  double share_above = 0.0;
+  double share_below = 0.0;  ///< share of those scans whose average is below the bounds
 
   double share_inside() const { return 1.0 - share_above - share_below; }
   bool is_tested() const { return !std::isnan(mean); }

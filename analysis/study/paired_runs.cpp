@@ -10,7 +10,7 @@
 namespace montecarta::analysis {
 namespace {
 
-/// The runs that ended, and a value of each; NaN where it failed.
+/// The runs of a cell that ended, with a value for each; NaN for a failed run.
 struct EndedRuns {
   std::vector<std::uint64_t> runs;
   std::vector<double> values;

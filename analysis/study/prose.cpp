@@ -28,7 +28,7 @@ const AllProse& all_prose() {
   return all;
 }
 
-/// Fills in values and counts in `uses` {value} how often each was used.
+/// Fills in values, and counts in `uses` {value} how often each was used.
 std::string filled(const std::string& text, const Values& values, std::vector<int>& uses,
                    const std::string& where) {
   std::string result;

@@ -13,19 +13,19 @@ namespace montecarta::analysis {
 
 /// A text file beside the sources, built into the program: paragraphs below headings `## key`.
 struct ProseFile {
-  std::string_view name;  ///< without folder and extension
+  std::string_view name;  ///< file name without folder and extension
   std::string_view text;
 };
 std::span<const ProseFile> prose_files();
 
-/// {key}{paragraph}, each paragraph in one line.
+/// {key}{paragraph} Texts; each paragraph is one line.
 using ProseTexts = std::map<std::string, std::vector<std::string>, std::less<>>;
 
 /// Splits a text file. A text without a heading, a heading without a text and a key that is given
 /// twice are our mistakes (expect()).
 ProseTexts read_prose(std::string_view text);
 
-/// Texts for {placeholders}, by name.
+/// Names of {placeholders} with the texts that replace them.
 using Values = std::vector<std::pair<std::string_view, std::string>>;
 
 /// The paragraphs below `## key` in the file `name`, with their {placeholders} filled in. An
@@ -34,13 +34,13 @@ using Values = std::vector<std::pair<std::string_view, std::string>>;
 std::vector<std::string> paragraphs(std::string_view name, std::string_view key,
                                     const Values& values = {});
 
-/// The single paragraph of a key that has one; otherwise like paragraphs().
+/// The paragraph of a key that has only one; otherwise like paragraphs().
 std::string prose(std::string_view name, std::string_view key, const Values& values = {});
 
-/// Every `from` in a text replaced.
+/// The text with every `from` replaced by `to`.
 std::string replaced(std::string text, std::string_view from, std::string_view to);
 
-/// The name of the file that has `## key`, of which there is one.
+/// The name of the only file that has `## key`.
 std::string_view file_of_prose(std::string_view key);
 
 }  // namespace montecarta::analysis

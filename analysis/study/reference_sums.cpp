@@ -19,7 +19,7 @@ void add_spread(const std::string& name, const std::string& units, const Spread&
   all.emplace_back(name + "_greatest", units, spread.greatest);
 }
 
-/// Numbers of the map, which are the same against every reference.
+/// Returns whether a number belongs to the map: it is the same against every reference.
 bool is_of_the_map(const std::string& name) {
   return name.starts_with("map_") || name.starts_with("beacon");
 }

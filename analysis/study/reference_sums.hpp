@@ -15,15 +15,15 @@
 
 namespace montecarta::analysis {
 
-/// The complete runs of a cell against one reference.
+/// Comparison of the complete runs of a cell with one reference.
 struct ReferenceAnalysis {
   std::vector<ReferenceScores> runs;  ///< {run}
-  /// [m] {fix} raw distance, RMS over runs; empty where runs are drives of their own.
+  /// [m] {fix} RMS raw distance over runs; empty if runs are drives of their own.
   std::vector<double> error_over_time;
 
-  /// A score over the runs with fixes.
+  /// Summary of a score over the runs with fixes.
   Spread over_runs(double ReferenceScores::*score) const;
-  /// Number of runs with fixes; a drive of a run's own may have none.
+  /// Number of runs with fixes; a run's own drive may have none.
   std::size_t with_fixes() const;
   /// Number of runs that lost the map.
   std::size_t lost() const;
@@ -31,15 +31,15 @@ struct ReferenceAnalysis {
   std::size_t better_than(double baseline, double ReferenceScores::*score) const;
 };
 
-/// One for each reference of the drive, the leading first.
+/// {reference of the drive} comparisons, the leading one first.
 using ReferenceAnalyses = std::vector<ReferenceAnalysis>;
 
 /// Adds up runs against one reference in the order of the calls. Memory depends on fixes, and grows
 /// by a few numbers with every run.
 class ReferenceAccumulator {
  public:
-  /// `same`: all runs have the same fixes, and errors are added up fix by fix; `own`: they have
-  /// not.
+  /// Whether all runs have the same fixes, so that errors are added up fix by fix, or each run its
+  /// own.
   enum class Fixes { same, own };
   explicit ReferenceAccumulator(Fixes fixes = Fixes::same) : fixes_(fixes) {}
   void add(const ReferenceRun& run);
@@ -52,18 +52,18 @@ class ReferenceAccumulator {
  private:
   Fixes fixes_;
   std::vector<ReferenceScores> runs_;
-  std::vector<double> squared_;  ///< [m^2] {fix} sum over runs
+  std::vector<double> squared_;  ///< [m^2] {fix} sum of squared distances over runs
 };
 
-/// Why a recorded drive has no verdict on consistency.
+/// The reason why a recorded drive has no verdict on consistency.
 std::string no_truth_sentence(const StudyAnalysis& study);
 
-/// The baseline: the first cell of the filter ekf_slam with complete runs; nullptr if there is
+/// The baseline: the first cell with the filter ekf_slam and complete runs; nullptr if there is
 /// none.
 const CellAnalysis* baseline_of(const StudyAnalysis& study);
 
-/// Numbers of a cell for one reference, named as in files: each over runs as mean, standard error,
-/// median, least and greatest; and the numbers of its maps.
+/// Numbers of a cell for one reference, with their names in files: mean, standard error, median,
+/// least and greatest of each over runs; and the numbers of its maps.
 Frame::Row reference_numbers(const CellAnalysis& cell, std::size_t reference);
 
 }  // namespace montecarta::analysis

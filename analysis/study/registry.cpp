@@ -14,8 +14,8 @@
 
 namespace montecarta::analysis {
 
-// NAME_metric() is defined in metrics/NAME.cpp; that of beacons in map_size.cpp, and that of
-// particles in diversity.cpp.
+// NAME_metric() is defined in metrics/NAME.cpp, except beacons_metric() in map_size.cpp and
+// particles_metric() in diversity.cpp.
 Metric errors_metric(), consistency_metric(), verdict_metric(), families_metric(),
     components_metric(), map_size_metric(), particles_metric(), lineages_metric(),
     association_metric(), references_metric(), drive_metric(), beacons_metric(), bound_metric(),
@@ -24,7 +24,7 @@ Metric errors_metric(), consistency_metric(), verdict_metric(), families_metric(
     smoother_metric(), proper_scores_metric(), observability_metric();
 
 std::span<const Metric> all_metrics() {
-  // In the order of their numbers in files.
+  // The order is that of their numbers in files.
   static constexpr std::array kMakers = {
       errors_metric,          consistency_metric,   verdict_metric,
       families_metric,        components_metric,    map_size_metric,
@@ -44,7 +44,7 @@ std::span<const Metric> all_metrics() {
 
 namespace {
 
-/// Mean, spread, standard error and interval of a score.
+/// Adds mean, spread, standard error and interval of a score.
 void add_score(const CellAnalysis& cell, const Score& score, Frame::Row& all) {
   const Summary summary = cell.over_runs(score.name);
   const Interval interval = cell.interval_of(score.name);

@@ -19,33 +19,33 @@ struct Section {
   enum class Shown { folded, open };
 
   struct Table {
-    std::string name;  ///< `analyze --table NAME` prints it, a report writes it to tables/NAME.tex
+    std::string name;  ///< `analyze --table NAME` prints the table; reports write tables/NAME.tex
     TextTable table;
   };
   /// Notes for readers who are new to such a table.
   struct Note {
     std::string text;
   };
-  /// The result as a sentence before all tables; a page has it on the cards of cells.
+  /// The result as a sentence before all tables; a page shows it on the cards of cells.
   struct Lead {
     std::string text;
   };
-  /// HTML for the page alone.
+  /// HTML for the page only.
   struct Html {
     std::string text;
   };
 
   using Block = std::variant<Table, Note, Lead, Html>;
 
-  std::string name;   ///< of its file of prose and of its place in reading_order()
-  std::string title;  ///< a heading; empty: none
+  std::string name;   ///< name of its file of prose and of its place in reading_order()
+  std::string title;  ///< heading; empty if there is none
   std::vector<Block> blocks = {};
-  bool is_for_terminal = true;       ///< else of the page alone
+  bool is_for_terminal = true;       ///< whether a terminal shows the section, or only the page
   std::vector<Figure> figures = {};  ///< each with a heading of its own
-  std::string summary = {};          ///< one line beside the heading: the result in short
-  Shown shown = Shown::folded;       ///< on a page, before the reader opens it
+  std::string summary = {};          ///< one line beside the heading with the result in short
+  Shown shown = Shown::folded;       ///< state on a page before the reader opens it
 
-  /// Its blocks of one kind.
+  /// The blocks of one kind.
   template <class Kind>
   std::vector<Kind> all() const {
     std::vector<Kind> found;
@@ -57,10 +57,10 @@ struct Section {
   /// Returns whether there is anything except notes on missing data.
   bool has_content() const;
 
-  /// Adds a table; nothing if it has no rows.
+  /// Adds a table if it has rows.
   void add(const std::string& table_name, const TextTable& table);
   void add(const std::vector<std::string>& notes);
-  /// Each paragraph below `## key` in the file of prose that is called as the section.
+  /// Adds each paragraph below `## key` in the file of prose that has the name of the section.
   void add_notes(std::string_view key, const Values& values = {});
   void add_html(const std::string& html);
 };
@@ -72,12 +72,12 @@ Section section_of(std::string_view name, const Values& values = {});
 /// The place of a section with its figures.
 struct SectionPlace {
   std::string section;
-  std::vector<std::string> figures = {};          ///< before the one that is called as the section
-  Section::Shown shown = Section::Shown::folded;  ///< on the page
+  std::vector<std::string> figures = {};  ///< figures before the one with the name of the section
+  Section::Shown shown = Section::Shown::folded;  ///< state on the page
 };
 
 /// The order of the sections on the page and on a terminal. Sections and figures without a place
-/// come behind them.
+/// come last.
 const std::vector<SectionPlace>& reading_order();
 
 }  // namespace montecarta::analysis

@@ -16,14 +16,14 @@
 namespace montecarta::analysis {
 namespace {
 
-/// To be raised when the meaning of the words changes and their layout does not.
+/// Version of the words. It must be raised when their meaning changes but their layout does not.
 constexpr std::uint64_t kVersion = 2;
 
 static_assert(kRunsBesideSums >= kBoundRuns, "the paths of the Cramer-Rao bound are stored");
 
 using ReasonWords = std::array<std::uint64_t, kFailureReasonBytes / sizeof(std::uint64_t)>;
 
-/// What is stored of each run of a group.
+/// Data that are stored for each run of a group.
 struct RunsOfGroup {
   struct Failure {
     std::uint32_t step = 0;
@@ -86,9 +86,9 @@ std::uint64_t runs_in(const ResultFile& file) {
 }
 
 double bytes_of_sums(std::uint64_t runs, std::size_t scans) {
-  // Measured: a file grows by 38 words for each run of EKF-SLAM and by 47 for one of FastSLAM.
-  // These are the scores that apply to the run, a word each, and what verdict, NEES and lineages
-  // keep of it.
+  // These are measured: a file grows by 38 words for each run of EKF-SLAM and by 47 for one of
+  // FastSLAM. They are the scores that apply to the run, a word each, and the numbers that verdict,
+  // NEES and lineages keep for it.
   constexpr double kWordsOfRun = 40.0, kWordsOfScan = 48.0;
   const auto n = static_cast<double>(runs), s = static_cast<double>(scans);
   const double groups = std::ceil(n / static_cast<double>(kRunsOfAGroup));
@@ -136,7 +136,7 @@ struct ReadGroup {
   CellSums sums;
 };
 
-/// Throws StudyError unless the sums are of the runs that the head of the group says.
+/// Throws StudyError unless the runs of the sums are those that the head of the group lists.
 void expect_group(const SumGroup& group, const ReadGroup& read) {
   const auto count = [&](RunStatus status) {
     return static_cast<std::uint64_t>(std::ranges::count(read.runs.status, status));

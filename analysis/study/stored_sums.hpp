@@ -7,30 +7,30 @@
 #include <cstdint>
 #include <vector>
 
-/// Sums over groups of runs that are stored in place of the runs (record.columns has sums).
+/// Sums over groups of runs that are stored instead of the runs (if record.columns has sums).
 namespace montecarta::analysis {
 
-/// Level of the bounds in sums that are stored.
+/// Level of the bounds in stored sums.
 inline constexpr double kStoredLevel = kUsualLevel;
 
-/// Number of runs that a file has, in rows or in sums.
+/// Number of runs that a file holds, in rows or in sums.
 std::uint64_t runs_in(const ResultFile& file);
 
 /// {cell} The sums over all runs of `rows`, which are one group of a study.
 std::vector<NewGroup> sums_to_store(const ResultFile& rows, const Parallel& parallel);
 
-/// [byte] About how large the sums over `runs` runs of a cell with `scans` are.
+/// [byte] Approximate size of the sums over `runs` runs of a cell with `scans` scans.
 double bytes_of_sums(std::uint64_t runs, std::size_t scans);
 
-/// A cell of a file with sums.
+/// The sums of a cell of a file.
 struct StoredSums {
-  std::vector<std::uint64_t> complete;  ///< numbers of the runs
+  std::vector<std::uint64_t> complete;  ///< numbers of the complete runs
   std::vector<FailedRun> failures;
   CellSums sums;
 };
 
 /// Reads the sums of all groups of a cell. Throws StudyError if another version of this program
-/// wrote them, or if they are damaged. The criteria must be of kStoredLevel.
+/// wrote them, or if they are damaged. The criteria must have the level kStoredLevel.
 StoredSums read_stored_sums(const ResultFile& file, const StoredCell& cell,
                             const RunCriteria& criteria, const Parallel& parallel);
 

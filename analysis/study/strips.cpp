@@ -15,13 +15,13 @@ constexpr std::size_t kMostStripColumns = 500;
 constexpr int kLevelsPerDecade = 8, kLevelsBelow = kLevelsPerDecade,
               kLevelsAbove = 3 * kLevelsPerDecade;
 constexpr int kInsideLevel = kLevelsBelow + kLevelsAbove;
-constexpr double kStripThickness = 0.84;  // of the distance between rows
+constexpr double kStripThickness = 0.84;  // share of the distance between rows
 
 /// Red, green and blue, from 0 to 255.
 using Colour = std::array<int, 3>;
 
-/// ColorBrewer's RdBu, safe for the colour-blind, without its lightest colours: everything outside
-/// the band is darker than the grey inside it, on paper without colours as well.
+/// ColorBrewer's RdBu, safe for the colour-blind, without its lightest colours: every colour
+/// outside the band is darker than the grey inside it, also in a black-and-white print.
 constexpr std::array kTooSmall = {Colour{0x05, 0x30, 0x61}, Colour{0x21, 0x66, 0xac},
                                   Colour{0x43, 0x93, 0xc3}, Colour{0x92, 0xc5, 0xde},
                                   Colour{0xc2, 0xdc, 0xec}};
@@ -30,8 +30,8 @@ constexpr std::array kTooLarge = {Colour{0xfb, 0xd0, 0xb9}, Colour{0xf4, 0xa5, 0
                                   Colour{0x67, 0x00, 0x1f}};
 constexpr const char* kInsideColour = "#e9e9e9";
 
-/// The colour of a palette at `share` of its length, from 0 to 1, as "#0072b2"; linear between its
-/// colours.
+/// The colour of a palette at `share` of its length, from 0 to 1, as "#0072b2"; it is interpolated
+/// linearly.
 std::string colour_within(std::span<const Colour> palette, double share) {
   const double place = share * static_cast<double>(palette.size() - 1);
   const auto low = std::min(static_cast<std::size_t>(place), palette.size() - 2);
@@ -154,7 +154,7 @@ StripBoxes strip_boxes(const ChartPanel& panel, double x_to) {
     for (std::size_t c = 0; c < columns; ++c) {
       const int level = levels[c];
       if (level == ChartStrips::kNoLevel || (c > 0 && levels[c - 1] == level)) continue;
-      // Every box reaches on below those behind it, so that no light line parts neighbours.
+      // Every box extends below the following boxes, so that no light line separates neighbours.
       std::size_t gap = c;
       while (gap < columns && levels[gap] != ChartStrips::kNoLevel) ++gap;
       const double left = begin(c), right = begin(gap);

@@ -11,10 +11,10 @@
 namespace montecarta::analysis {
 
 /// The largest number of cells for which a figure of ratios over time has curves. For more cells it
-/// has strips, which do not hide each other.
+/// has strips, which do not cover each other.
 inline constexpr std::size_t kMostRatioCurves = 6;
 
-/// Colours of all levels, as "#b2182b": of ratios from 1/10 to 1000 on a logarithmic scale, blue
+/// Colours of all levels, as "#b2182b": for ratios from 1/10 to 1000 on a logarithmic scale, blue
 /// below 1 and red above it, then the grey of a ratio inside its band.
 const std::vector<std::string>& strip_colours();
 
@@ -22,10 +22,10 @@ const std::vector<std::string>& strip_colours();
 /// NaN. A ratio beyond an end of the scale has the colour of that end.
 int strip_level(double ratio, const Interval& band);
 
-/// Label of the scale.
+/// Label of the colour scale.
 inline constexpr const char* kStripScale = "times too large";
 
-/// A number of the scale: at the lower end of a level, or at the end of the scale.
+/// A number beside the scale, at the lower end of a level or at the end of the scale.
 struct StripTick {
   std::size_t level;
   std::string text;
@@ -34,31 +34,32 @@ const std::vector<StripTick>& strip_ticks();
 
 /// A row of strips: the ratio of errors to their expectation over time.
 struct StripRow {
-  std::string name;            ///< of the cell
-  std::vector<double> ratios;  ///< one for each place on the common axis; NaN: none
-  std::vector<Interval> band;  ///< of a right ratio at each of these places
-  std::string note;            ///< at the right end
+  std::string name;            ///< label of the cell
+  std::vector<double> ratios;  ///< {place on the common axis} NaN if there is none
+  std::vector<Interval> band;  ///< {place} band of the ratio of a consistent filter
+  std::string note;            ///< text at the right end
 };
 
 /// Rows of strips over a common axis, mostly time.
 struct StripPanel {
-  std::string name;    ///< of its data file
-  std::string label;   ///< its heading
-  std::string inside;  ///< meaning of grey
+  std::string name;    ///< name of its data file
+  std::string label;   ///< heading of the panel
+  std::string inside;  ///< meaning of the grey level
   std::string notes;   ///< heading of the notes
   std::vector<StripRow> rows;
 };
 
-/// Adds panels of strips, one above the other, to a figure; nothing if the first has no rows. If
-/// several places of a long series share a column, it shows the ratio farthest from 1, as a factor,
-/// among those outside their band, or among all if none is outside, so that no excursion is lost.
+/// Adds panels of strips, one above the other, to a figure; none if the first has no rows. If
+/// several places of a long series share a column, the column shows the ratio farthest from 1, as a
+/// factor, among those outside their band, or among all if none is outside, so that no excursion is
+/// lost.
 void add_strips(const std::vector<StripPanel>& panels, const std::vector<double>& places,
                 Figure& figure);
 
-/// Strips as boxes that gnuplot draws, one for neighbouring columns of the same colour. Row r from
-/// the top has y = r: the axis points down.
+/// Strips as boxes that gnuplot draws, one for each sequence of columns of the same colour. Row r
+/// from the top has y = r: the axis points down.
 struct StripBoxes {
-  std::vector<double> x, y;  ///< of the middle
+  std::vector<double> x, y;  ///< middle of each box
   std::vector<double> width, height;
   std::vector<double> colour;  ///< 0xRRGGBB as a number
 };

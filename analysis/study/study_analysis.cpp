@@ -20,13 +20,14 @@
 namespace montecarta::analysis {
 namespace {
 
-/// Unfinished work may have a fingerprint without its run, after a power cut.
+/// Returns whether a file is unfinished work, which after a power cut may have a fingerprint
+/// without its run.
 bool is_work_in_progress(const std::filesystem::path& path) {
   return path.filename().string().find(".part") != std::string::npos;
 }
 
-/// Throws StudyError if run index `i`, which is marked as spared, cannot be: the study has no
-/// interim analyses, the run lies before the first one, or it was made.
+/// Throws StudyError if run index `i`, which is marked as not needed, cannot be: the study has no
+/// interim analyses, the run lies before the first of them, or the run was made.
 void expect_planned(const ResultFile& file, const StoredCell& cell, std::size_t i) {
   file.expect_whole(cell, i);
   if (!study_setting(file.study_text(), "until").value_or("").empty() && i >= kFirstRound) return;
@@ -36,7 +37,7 @@ void expect_planned(const ResultFile& file, const StoredCell& cell, std::size_t 
                    "a copy that is whole, or run the study again");
 }
 
-/// Interim analyses planned and made, by the runs that were made.
+/// Counts the interim analyses that were planned and made, by the runs that were made.
 void count_looks(const ResultFile& file, CellAnalysis& cell) {
   const auto looks = looks_in(file.study_text(), file.study_runs());
   const std::uint64_t made = cell.runs.size() + cell.failures.size();
@@ -45,8 +46,8 @@ void count_looks(const ResultFile& file, CellAnalysis& cell) {
       std::ranges::count_if(looks, [&](std::uint64_t look) { return look <= made; }));
 }
 
-/// Run indices in the file of the complete runs among the first `runs`; counts and names them all
-/// in `cell`.
+/// Indices in the file of the complete runs among the first `runs`. Counts them, and lists their
+/// numbers, in `cell`.
 std::vector<std::size_t> complete_runs(const ResultFile& file, const StoredCell& stored,
                                        std::size_t runs, CellAnalysis& cell) {
   const auto status = file.status(stored);
@@ -121,7 +122,7 @@ std::vector<CellSums> sums_of_tasks(const ResultFile& file, std::span<CellTask> 
   return sums_of(runs, criteria, parallel);
 }
 
-/// Throws StudyError unless the sums that the file may have are of this level, and of the first
+/// Throws StudyError unless the sums that the file may have are at this level, and hold the first
 /// runs of the study, by which verdicts judge how errors of a run are correlated.
 void expect_usable_sums(const ResultFile& file, double level) {
   if (!file.has_sums()) return;
@@ -139,7 +140,7 @@ void expect_usable_sums(const ResultFile& file, double level) {
   }
 }
 
-/// What the study in the file says, by a function of its text.
+/// A fact of the study in the file, read from its text by a function.
 template <class Read>
 auto read_study(const ResultFile& file, Read read) {
   try {
@@ -160,7 +161,7 @@ void expect_scans(const ResultFile& file) {
                    "another file");
 }
 
-/// All that the file says of itself.
+/// Begins the analysis with the facts that the file states.
 StudyAnalysis begin(const ResultFile& file, double level, std::optional<double> within) {
   StudyAnalysis study;
   study.file = file.path().filename().string();
@@ -185,7 +186,8 @@ StudyAnalysis begin(const ResultFile& file, double level, std::optional<double> 
   return study;
 }
 
-/// Whichever drive is met has its reference r there; a drive may have no fix of it.
+/// {reference} The judged references. Each drive has a list of references in the same order; in
+/// some drives a reference may have no fixes.
 std::vector<JudgedReference> judged_references(const RunCriteria& criteria) {
   std::vector<JudgedReference> all;
   const auto add = [](JudgedReference& reference, const PathAtFixes& fixes) {
@@ -219,7 +221,7 @@ std::string StudyAnalysis::scans_text() const {
 
 StudyAnalysis analyze(const ResultFile& file, double level, const Parallel& parallel,
                       std::optional<double> within) {
-  nees_bounds(1, 1, level);  // refuses a wrong level before the work
+  nees_bounds(1, 1, level);  // throws if the level is wrong, before the work begins
   StudyAnalysis study = begin(file, level, within);
   expect_scans(file);
   expect_usable_sums(file, level);

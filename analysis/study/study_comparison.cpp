@@ -21,7 +21,7 @@
 namespace montecarta::analysis {
 namespace {
 
-/// A failed run is lost, unless neither side of the score is better.
+/// Counts wins. A failed run is lost, unless neither direction of the score is better.
 Wins wins_of(const PairedRuns& pairs, const Score& score) {
   Wins wins;
   if (score.better != Better::neither) wins = {pairs.left_alone, pairs.right_alone, pairs.neither};
@@ -33,7 +33,7 @@ Wins wins_of(const PairedRuns& pairs, const Score& score) {
   return wins;
 }
 
-/// The error of which a score is the NEES; nullopt for other scores.
+/// The block whose NEES a score is; nullopt for other scores.
 std::optional<ErrorBlock> judged_block(const Score& score) {
   const std::string_view name = score.name;
   if (name == "nees") return ErrorBlock::pose;
@@ -41,7 +41,7 @@ std::optional<ErrorBlock> judged_block(const Score& score) {
   return std::nullopt;
 }
 
-/// The name in tables, which show a NEES as its ratio to the expected one.
+/// Name of a score in tables, which show a NEES as its ratio to the expected one.
 std::string name_in_tables(const Score& score) {
   const auto block = judged_block(score);
   if (!block) return score.name;
@@ -76,7 +76,7 @@ CellComparison compare_pair(const CellAnalysis& cell, const CellAnalysis& baseli
   return row;
 }
 
-/// Both tests of every row are one family.
+/// Adjusts the p-values: both tests of all rows are one family.
 void adjust(std::vector<CellComparison>& rows) {
   std::vector<double> p;
   for (const CellComparison& row : rows) p.insert(p.end(), {row.wins.p, row.rank.p});
@@ -99,7 +99,7 @@ Wins seen_from_the_other(Wins wins) {
   return wins;
 }
 
-/// Each pair is one test, whichever side it is seen from.
+/// Adjusts the p-values: each pair of cells is one test, from either side.
 void adjust(WinMatrix& matrix) {
   const std::size_t n = matrix.cells.size();
   std::vector<double> p;
@@ -187,15 +187,15 @@ std::string pairs_text(const CellComparison& row) {
   return text;
 }
 
-/// "NEES ratio higher (277 times as large)".
+/// A finding in words: "NEES ratio higher (277 times as large)".
 std::string finding_of(const CellComparison& row, double level) {
   const std::string finding = name_in_tables(*row.score) + ' ' + row.verdict(level);
   return std::isfinite(row.ratio) ? finding + " (" + readable(row.ratio) + " times as large)"
                                   : finding;
 }
 
-/// "fast against ekf: NEES ratio higher (277 times as large); undecided: position_rmse." The rows
-/// are of one cell.
+/// A sentence on one cell, to which all rows belong: "fast against ekf: NEES ratio higher (277
+/// times as large); undecided: position_rmse."
 std::string sentence_of(std::span<const CellComparison> rows, const Comparisons& all) {
   std::string decided, undecided;
   for (const CellComparison& row : rows) {
@@ -209,7 +209,7 @@ std::string sentence_of(std::span<const CellComparison> rows, const Comparisons&
   return rows.front().cell + " against " + all.baseline + ": " + decided + undecided + ".";
 }
 
-/// Says for each cell that failed how its failures count.
+/// Adds, for each cell with failures, a note on how they count.
 void add_failures(const StudyAnalysis& study, std::vector<std::string>& notes) {
   for (const CellAnalysis& cell : study.cells) {
     if (cell.failures.empty()) continue;
@@ -348,7 +348,8 @@ void write_comparison_csv(const StudyComparison& comparison,
 }
 
 std::vector<std::string> comparison_sentences(const Comparisons& comparisons) {
-  std::vector<CellComparison> rows = comparisons.rows;  // by cell, in the order of the first score
+  // Sorted by cell, in the order of the first score.
+  std::vector<CellComparison> rows = comparisons.rows;
   std::vector<std::string> sentences;
   for (auto first = rows.begin(); first != rows.end();) {
     const auto next = std::stable_partition(

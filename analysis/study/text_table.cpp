@@ -22,7 +22,7 @@ std::vector<std::size_t> widths_of(const std::vector<TableRow>& rows) {
   return widths;
 }
 
-constexpr std::size_t kNarrowestText = 24;  // a column of sentences
+constexpr std::size_t kNarrowestText = 24;  // least width of a column of sentences
 
 std::size_t longest_word(const std::string& text) {
   std::istringstream words(text);
@@ -77,7 +77,7 @@ TableLayout layout_of(const TextTable& table, std::size_t width) {
   return layout;
 }
 
-/// Columns that stand beside each other, the first `keys` in all blocks.
+/// {block} Columns that fit beside each other; each block begins with the first `keys` columns.
 std::vector<std::vector<std::size_t>> blocks_of(const TableLayout& layout, std::size_t keys,
                                                 std::size_t width) {
   std::vector<std::size_t> first(keys);
@@ -100,7 +100,7 @@ std::vector<std::vector<std::size_t>> blocks_of(const TableLayout& layout, std::
 
 enum class Anchor { top, bottom };
 
-/// One row of some columns, as many lines as its highest text has.
+/// One row of some columns, with as many lines as its highest text has.
 std::vector<TableRow> lines_of_row(const TableRow& row, const std::vector<std::size_t>& columns,
                                    const std::vector<std::size_t>& widths, Anchor anchor) {
   std::vector<std::vector<std::string>> texts;

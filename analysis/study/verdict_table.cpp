@@ -23,7 +23,7 @@
 namespace montecarta::analysis {
 namespace {
 
-/// The band of all complete runs: single scans may have fewer valid ones.
+/// Text of the band for all complete runs; single scans may have fewer valid runs.
 std::string band_text(const CellAnalysis& cell, std::size_t dimension, double level) {
   if (cell.complete == 0) return "-";
   return interval_text(nees_bounds(cell.complete, dimension, level));
@@ -34,7 +34,7 @@ const NeesResult* tested_pose(const CellAnalysis& cell) {
   return pose != nullptr && pose->is_tested() ? pose : nullptr;
 }
 
-/// The average of an ideal filter with these moments.
+/// The average NEES of an ideal filter with these moments.
 double ideal_nees(const CellAnalysis& cell, const NeesResult& nees) {
   const std::size_t d = nees.series.dimension;
   const bool drawn = nees.moments == Moments::spread && cell.particles > 0;
@@ -76,22 +76,22 @@ std::vector<TextTable::Entry> consistency_row(const CellAnalysis& cell, const Ne
   return row;
 }
 
-constexpr std::size_t kComplete = 1;  // the column of complete runs
+constexpr std::size_t kComplete = 1;  // index of the column of complete runs
 
-/// "40", or "32 of 200" where runs failed, are missing or were not needed.
+/// Text of the complete runs: "40", or "32 of 200" if runs failed, are missing or were not needed.
 std::string complete_runs_text(const CellAnalysis& cell) {
   const std::size_t all = cell.complete + cell.failures.size() + cell.missing + cell.spared;
   const std::string complete = std::to_string(cell.complete);
   return cell.complete == all ? complete : complete + " of " + std::to_string(all);
 }
 
-/// "1.0 of 100": first particles that still have descendants at the end.
+/// Text of the first particles that still have descendants at the end: "1.0 of 100".
 std::string ancestors_text(const CellAnalysis& cell) {
   const std::string count = readable(cell.over_runs("ancestors_at_start_at_the_end").mean, 2);
   return count == "-" ? count : count + " of " + std::to_string(cell.particles);
 }
 
-/// Leaves out column `c` if all cells say `text` in it.
+/// Leaves out column `c` if all its entries are `text`.
 void leave_out(std::size_t c, const std::string& text, TextTable& table) {
   if (!std::ranges::all_of(table.rows, [&](const TableRow& row) { return row[c] == text; })) return;
   const auto place = static_cast<std::ptrdiff_t>(c);

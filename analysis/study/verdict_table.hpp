@@ -18,29 +18,29 @@
 
 namespace montecarta::analysis {
 
-/// One row a cell, narrow enough for a terminal: complete runs, verdict, NEES ratio with its
-/// interval, RMSE of position and heading, ancestors and cost. Columns without a number are left
-/// out, and so are runs if every cell completed all of the file.
+/// A table with one row for each cell, narrow enough for a terminal: complete runs, verdict, NEES
+/// ratio with its interval, RMSE of position and heading, ancestors and cost. Columns without a
+/// number are left out, and so are runs if every cell completed all runs of the file.
 TextTable summary_table(const StudyAnalysis& study);
 
-/// One row for each cell: its runs, the verdict, and the numbers behind it.
+/// A table with one row for each cell: its runs, the verdict, and the numbers behind it.
 TextTable verdict_table(const StudyAnalysis& study);
 
-/// One row for each cell: errors, effective particles and cost of a run.
+/// A table with one row for each cell: errors, effective particles and cost of a run.
 TextTable accuracy_table(const StudyAnalysis& study);
 
-/// One row for each cell and definition of covariance and error: the average NEES.
+/// A table with one row for each cell and definition of covariance and error: the average NEES.
 TextTable consistency_table(const StudyAnalysis& study);
 
-/// One average NEES in single numbers. The band is that of all complete runs.
+/// The single numbers of one average NEES. The band is that of all complete runs.
 Frame::Row numbers_of(const CellAnalysis& cell, const NeesResult& nees, double level);
 
 /// A member of a family as a row of a file.
 Frame::Row family_row(const FamilyTest& test, const Member& member);
-/// The members of a family, one a row, the same for CSV and HDF5.
+/// The members of a family, one in each row, the same for CSV and HDF5.
 Frame family_frame(const FamilyTest& test);
 
-/// One row for each failed run: cell, run, step, reason.
+/// A table with one row for each failed run: cell, run, step, reason.
 TextTable failure_table(const StudyAnalysis& study);
 
 /// Explains the NEES ratio.
@@ -52,39 +52,39 @@ std::string answers_note(const StudyAnalysis& study);
 /// Notes on the verdict table, for readers who do not know the chi-square distribution.
 std::vector<std::string> verdict_notes(const StudyAnalysis& study);
 
-/// The NEES ratio that the corrected spread of particles shows in the mean where squared errors are
+/// The NEES ratio that the corrected spread of particles shows on average if squared errors are
 /// twice those of an ideal sampler with the cell's mean number of effective draws (STATISTICS 4).
 /// nullopt if the cell is not judged by that spread.
 std::optional<double> shown_for_twice(const CellAnalysis& cell);
 
-/// At most a sentence each on runs, scans and covariances that the verdict judges in part or not at
-/// all, and on ratios that few particles show too near to 1. Cells with less than one in a hundred
-/// are not named; consistency_table() has all counts.
+/// Cautions, at most one sentence each, on runs, scans and covariances that the verdict judges in
+/// part or not at all, and on ratios that few particles show too near to 1. Cells in which this
+/// affects less than one in a hundred are not named; consistency_table() has all counts.
 std::vector<std::string> cautions(std::span<const CellAnalysis> cells,
                                   const ImportedState& imported);
 
-/// "40 complete", "2 FAILED, 38 complete", ...
+/// The runs of a cell in words: "40 complete", "2 FAILED, 38 complete", ...
 std::string runs_in_words(const CellAnalysis& cell);
 
 std::string name_of(ErrorBlock block);
 
 std::string name_of(Moments moments);
 
-/// The NEES ratio with its interval; "-" where it is not tested.
+/// The NEES ratio with its interval; "-" if it is not tested.
 std::string ratio_text(const CellAnalysis& cell);
 
 /// The mean of a score over the complete runs of a cell, in words.
 struct MeanText {
-  std::string mean;    ///< with its interval, or alone if the scores have a heavy tail
-  std::string median;  ///< with its median_interval() if the scores have a heavy tail, else empty
+  std::string mean;    ///< mean with its interval, or alone if the scores have a heavy tail
+  std::string median;  ///< median with its median_interval() if they have a heavy tail, else empty
 
-  /// "0.29 [0.22, 0.37]", "3.1 (heavy tail), median 0.4 [0.3, 0.6]"
+  /// Both in one text: "0.29 [0.22, 0.37]", "3.1 (heavy tail), median 0.4 [0.3, 0.6]".
   std::string text() const;
 };
 
-/// The mean with the interval of the cell. If the values have a heavy tail, no interval of the mean
-/// is valid: the median then follows, with an interval at `level` unless there are too few runs
-/// for one. All numbers are multiplied by `factor`.
+/// The mean of a score with the interval of the cell. If the values have a heavy tail, no interval
+/// of the mean is valid: the median then follows, with an interval at `level` unless there are too
+/// few runs for one. All numbers are multiplied by `factor`.
 MeanText score_text(const CellAnalysis& cell, std::string_view score, double level,
                     double factor = 1.0);
 

@@ -8,17 +8,18 @@
 namespace montecarta::analysis {
 namespace {
 
-/// Stakes are powers of two, from this one on: neighbours differ so little that a stake between
-/// them would have a tenth more growth at most.
+/// The least stake. Stakes are powers of two: a stake between two of them would grow at most a
+/// tenth faster.
 constexpr double kLeastStake = 1.0 / 64.0;
-constexpr std::size_t kStakesBelow = 8;      // up to 2
-constexpr double kErrorsOfVariance = 2.0;    // standard errors that are added to the estimate
-constexpr double kLeastVariance = 1e-4;      // that sums of powers in doubles can tell from 0
-constexpr double kVarianceOfOneError = 2.0;  // of the square of a Gaussian error
+constexpr std::size_t kStakesBelow = 8;  // number of stakes, up to 2
+// Number of standard errors added to the estimated variance.
+constexpr double kErrorsOfVariance = 2.0;
+constexpr double kLeastVariance = 1e-4;  // least variance that sums of powers in doubles resolve
+constexpr double kVarianceOfOneError = 2.0;  // variance of the square of a Gaussian error
 
 double stake(std::size_t index) { return std::ldexp(kLeastStake, static_cast<int>(index)); }
 
-/// Logarithm of the mean of numbers of which the logarithms are given.
+/// Logarithm of the mean of numbers with these logarithms.
 double log_mean(std::span<const double> logarithms) {
   if (logarithms.empty()) return -std::numeric_limits<double>::infinity();
   const double largest = std::ranges::max(logarithms);
@@ -31,7 +32,7 @@ double log_mean(std::span<const double> logarithms) {
 }  // namespace
 
 double largest_mean_exponential(double s, double variance) {
-  const double square = 1.0 + variance;  // the mean of m^2
+  const double square = 1.0 + variance;  // mean of m^2
   return (variance + std::exp(-s * square)) / square;
 }
 
@@ -67,8 +68,8 @@ double Bets::log_capital_below(double margin) const {
   return log_mean(capitals);
 }
 
-/// The variance of the means of runs in units of their squared expectation: the estimate and
-/// kErrorsOfVariance of its standard errors, which follow from the first four moments.
+/// Variance of the means of runs in units of their squared expectation: the estimate plus
+/// kErrorsOfVariance standard errors, which follow from the first four moments.
 double Bets::safe_variance() const {
   const auto n = static_cast<double>(runs_);
   const double mean = powers_[0] / n;

@@ -12,8 +12,8 @@ namespace {
 
 constexpr std::array kComponents = {"x", "y", "heading"};
 
-/// Judges the transforms of a cell by bands that all hold together (Bonferroni). The bands belong
-/// to numbers of values, which are nearly always the same.
+/// Judges the transforms of a cell by bands that all hold together (Bonferroni). A band is kept for
+/// each number of values, since the numbers are nearly always the same.
 class PitJudge {
  public:
   PitJudge(std::span<const RunPits> runs, std::size_t tests, double level)
@@ -40,7 +40,8 @@ class PitJudge {
   std::map<std::size_t, EcdfBand> bands_;
 };
 
-/// The largest number of tests of any cell, so that cells with as many runs have the same band.
+/// The largest number of tests that a cell can have, so that cells with as many runs have the same
+/// band.
 std::size_t most_tests(const RunPits& run) {
   const bool has_components = run.has_pose || run.has_rank || run.has_landmark;
   const std::size_t of_components = 2 * kQuarters * kComponents.size() + run.landmark.size();

@@ -13,15 +13,15 @@
 
 namespace montecarta::analysis {
 
-/// The quantity of transforms by the law of the NEES.
+/// Name of the quantity that is transformed by the law of the NEES.
 inline constexpr const char* kNees = "NEES";
 
 /// The transforms of one quantity over runs, compared to the uniform law.
 struct JudgedPits {
   std::string quantity;       ///< "x", "y", "heading", "landmark x", "landmark y", "NEES"
-  std::string by;             ///< "Gaussian" or "particles"
-  double time = 0.0;          ///< [s] of the scan
-  std::size_t undefined = 0;  ///< runs without a value
+  std::string by;             ///< law of the transform: "Gaussian" or "particles"
+  double time = 0.0;          ///< [s] time of the scan
+  std::size_t undefined = 0;  ///< number of runs without a value
   Uniformity test;
 
   bool is_like(const JudgedPits& other) const {
@@ -29,16 +29,16 @@ struct JudgedPits {
   }
 };
 
-/// The judged transforms of a cell; empty if nothing is judged.
+/// The judged transforms of a cell; empty if none is judged.
 using Calibrations = std::vector<JudgedPits>;
 
 /// Collects the transforms of complete runs in the order of the calls.
 class CalibrationSums {
  public:
   void add(const RunPits& run) { runs_.push_back(run); }
-  /// `times` [s] of all scans. A calibrated cell has no fault in any test with probability `level`
-  /// at least. The order is pose by moments, ranks, landmarks, NEES; quantities that are not stored
-  /// are absent.
+  /// Tests all quantities at the ends of the quarters; `times` [s] are those of all scans. With a
+  /// probability of at least `level`, no test finds a fault in a calibrated cell. The order is pose
+  /// by moments, ranks, landmarks, NEES; quantities that are not stored are absent.
   Calibrations result(std::span<const double> times, double level) const;
   static constexpr auto parts() { return std::tuple(appended(&CalibrationSums::runs_)); }
 

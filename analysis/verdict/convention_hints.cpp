@@ -8,7 +8,7 @@
 namespace montecarta::analysis {
 namespace {
 
-/// Whether no family rejects it.
+/// Returns whether no family rejects that the errors are consistent.
 bool fits_errors(const Verdict& found) {
   return std::ranges::none_of(found.families, &FamilyTest::is_rejected);
 }

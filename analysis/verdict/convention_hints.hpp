@@ -16,21 +16,22 @@
 
 namespace montecarta::analysis {
 
-/// Verdicts on the imported estimates of a cell under each convention of their error.
+/// Verdicts on the imported estimates of a cell, one for each convention of the error.
 struct ConventionHint {
-  std::vector<Verdict> by_convention;  ///< {kErrorConventions}; empty if only one applies
+  /// {kErrorConventions} verdicts; empty if only one convention applies.
+  std::vector<Verdict> by_convention;
 };
 
 /// Adds up the NEES of runs under every convention.
 class ConventionHints {
  public:
-  ConventionHints() = default;  ///< to be read
-  /// Sums for errors of `components` at `scans`.
+  ConventionHints() = default;  ///< empty sums, to be filled by a SumReader
+  /// Makes sums for errors of `components` components at `scans` scans.
   ConventionHints(std::size_t components, std::size_t scans);
 
-  /// One run: {kErrorConventions}{scan}.
+  /// Adds the NEES {kErrorConventions}{scan} of one run.
   void add(const std::array<std::vector<double>, kErrorConventions.size()>& nees);
-  /// Judged by size and scans at `level`; `times` [s] of the scans.
+  /// Verdicts by size and scans at `level`; `times` [s] of the scans.
   ConventionHint result(std::span<const double> times, double level, double within) const;
   static constexpr auto parts() {
     return std::tuple(settings(&ConventionHints::components_),
@@ -40,11 +41,11 @@ class ConventionHints {
  private:
   double components_ = 0.0;
   std::uint64_t runs_ = 0;
-  std::vector<SummedError> nees_;  ///< {kErrorConventions}
+  std::vector<SummedError> nees_;  ///< {kErrorConventions} sums
 };
 
-/// The conventions other than `said` that fit the covariances of `cell`, and those that do not.
-/// Empty if none was tested.
+/// A text that names the conventions other than `said` that fit the covariances of `cell`, and
+/// those that do not. Empty if none was tested.
 std::string in_words(const ConventionHint& hint, const std::string& cell, const std::string& said);
 
 }  // namespace montecarta::analysis

@@ -13,10 +13,11 @@
 namespace montecarta::analysis {
 namespace {
 
-/// So few effective samples may as well be one that lasts for the whole drive.
+/// With fewer effective samples, the errors may as well be one error that lasts for the whole
+/// drive.
 constexpr double kFewestEffective = 3.0;
 
-/// Means over runs; each run by itself has an interval that holds, and the runs are not
+/// Means over runs on one drive: the interval of each run is valid, and the runs are not
 /// independent.
 CorrelatedAverage mean_over_drives(std::span<const DriveScores> runs, std::size_t block) {
   const auto is_judged = [&](const DriveScores& run) {
@@ -94,7 +95,7 @@ DriveScores sums_over_drives(std::span<const DriveScores> runs, double level) {
   return all;
 }
 
-/// Fills verdict and minutes from the mean.
+/// Fills answer and minutes from the mean.
 void decide(double level, DriveConsistency& result) {
   const CorrelatedAverage& leads = result.mean.leads();
   if (!(leads.effective_samples > 0.0) || result.mean.is_the_reference) return;
@@ -122,7 +123,7 @@ std::string minutes_text(const DriveConsistency& drive) {
          compact(std::max(drive.minutes, 1.0)) + " minutes";
 }
 
-/// "1.2 to 1.4", "more than 1.2"
+/// A range of factors in words: "1.2 to 1.4", "more than 1.2".
 std::string factor_words(double lower, double upper) {
   if (std::isinf(upper)) return "more than " + compact(lower);
   return compact(lower) + " to " + compact(upper);

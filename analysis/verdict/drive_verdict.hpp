@@ -11,27 +11,27 @@
 
 namespace montecarta::analysis {
 
-/// Verdict on a cell by one reference. Runs on the same drive differ by the filter's random numbers
-/// alone, so many say no more about the drive than one; runs on drives of their own are
-/// independent.
+/// Verdict on a cell by one reference. Runs on the same drive differ only by the filter's random
+/// numbers, so many of them contain no more information about the drive than one; runs on drives of
+/// their own are independent.
 struct DriveConsistency {
   Answer answer = Answer::untested;
   double within = kUsualMargin;
-  DriveScores mean;        ///< means over runs; of counts and flags the largest
-  double minutes = 0.0;    ///< of such driving after which the verdict is decided; may be infinite
-  std::size_t drives = 0;  ///< drives that were judged; 0: all runs process one drive
+  DriveScores mean;        ///< means over runs; counts and flags are the largest of any run
+  double minutes = 0.0;    ///< length of such a drive that decides the verdict; may be infinite
+  std::size_t drives = 0;  ///< number of drives judged; 0 if all runs process one drive
 };
 
-/// Judges runs of one cell on the same drive. Untested if there are no runs, if no fix can be
-/// judged, or if the estimate is the reference itself.
+/// Judges runs of one cell on the same drive. The answer is untested if there are no runs, if no
+/// fix can be judged, or if the estimate is the reference itself.
 DriveConsistency judge_drive(std::span<const DriveScores> runs, double level, double within);
 
 /// Judges runs on drives of their own, with DriveScores::errors. In `mean`, fixes, seconds and
 /// counts are sums. Drives without a fix that can be judged are left out.
 DriveConsistency judge_own_drives(std::span<const DriveScores> runs, double level, double within);
 
-/// "consistent within 1.1", "optimistic by 1.3 to 2.1", "this drive cannot tell: it would need 40
-/// minutes", ...
+/// The verdict in words: "consistent within 1.1", "optimistic by 1.3 to 2.1", "this drive cannot
+/// tell: it would need 40 minutes", ...
 std::string in_words(const DriveConsistency& drive);
 
 }  // namespace montecarta::analysis

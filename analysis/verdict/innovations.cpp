@@ -14,11 +14,11 @@
 namespace montecarta::analysis {
 namespace {
 
-constexpr std::size_t kLagsTogether = 24;  // lags from 0 in whole registers
+constexpr std::size_t kLagsTogether = 24;  // number of lags, from 0, in whole registers
 
 static_assert(kInnovationLags < kLagsTogether);
 
-/// How many standard deviations white innovations keep to at all of `lags` lags (Sidak).
+/// The number of standard deviations that white innovations exceed at none of `lags` lags (Sidak).
 double white_deviate(std::size_t lags, double level) {
   const double each = std::pow(level, 1.0 / static_cast<double>(lags));
   return normal_quantile(0.5 + 0.5 * each);
@@ -54,7 +54,7 @@ void InnovationSums::Totals::add(std::span<const double> nis, std::span<const st
 
 void InnovationSums::Totals::add_products(std::span<const double> nis,
                                           std::span<const std::uint32_t> dof) {
-  // The last scan stands first, so that earlier ones follow it; where there is none stands zero.
+  // The last scan comes first, so that earlier ones follow; a scan without an innovation is zero.
   deviations_.assign(nis.size() + kLagsTogether, 0.0);
   is_there_.assign(deviations_.size(), 0.0);
   for (std::size_t s = 0; s < nis.size(); ++s) {
@@ -132,7 +132,7 @@ Innovations InnovationSums::Totals::result(std::span<const double> times, double
   double tested = 0.0, inside = 0.0;
   for (const SummedError::Scan& scan : nis_.scans()) {
     const auto freedom = static_cast<std::uint64_t>(scan.dimensions);
-    result.average.push_back(scan.ratio());  // NaN where there is none
+    result.average.push_back(scan.ratio());  // NaN if there is none
     result.bounds.push_back(freedom == 0 ? Interval{} : nees_bounds(freedom, 1, level));
     if (freedom == 0) continue;
     const Interval& band = result.bounds.back();

@@ -17,19 +17,19 @@
 
 namespace montecarta::analysis {
 
-/// Largest lag in scans at which innovations are compared; at most a quarter of the scans.
+/// Largest lag, in scans, at which innovations are correlated; at most a quarter of the scans.
 inline constexpr std::size_t kInnovationLags = 20;
 
-/// Fewest runs by whose means the size of innovations is judged that are not white.
+/// Fewest runs whose means judge the size of innovations that are not white.
 inline constexpr std::size_t kFewestRunsOfSize = 20;
 
 enum class Whiteness : std::uint8_t {
-  untested,  ///< too few scans for any lag
-  white,     ///< no lag exceeds its bound
+  untested,  ///< there are too few scans for any lag
+  white,     ///< the autocorrelation exceeds its bound at no lag
   not_white
 };
 
-/// The normalised innovation squared (NIS) that is farthest out for its degrees of freedom, and
+/// The normalised innovation squared (NIS) that is most improbable for its degrees of freedom, and
 /// the findings without it.
 struct LargestInnovation {
   double nis = kNaN;
@@ -41,40 +41,47 @@ struct LargestInnovation {
   Answer answer_without = Answer::untested;
 };
 
-/// Test of the NIS, which needs no truth. A consistent filter has 1 for each degree of freedom, and
-/// its innovations are white: independent from scan to scan.
+/// Test of the NIS, which needs no truth. For a consistent filter its expectation is 1 for each
+/// degree of freedom, and the innovations are white: independent from scan to scan.
 struct Innovations {
-  std::vector<double> average;   ///< {scan} NIS over degrees of freedom, over runs; NaN: none
-  std::vector<Interval> bounds;  ///< {scan} of the average (chi-square)
-  double share_inside = 0.0;     ///< of scans with a degree of freedom
-  double ratio = kNaN;           ///< NIS over degrees of freedom: of the verdict if it judges the
-                                 ///< size, else of all runs and scans together
-  /// On size, stretches and scans if the innovations are white. If not, on the size by the means of
-  /// runs; untested if these are fewer than kFewestRunsOfSize.
+  /// {scan} NIS over degrees of freedom, over runs; NaN if there is none.
+  std::vector<double> average;
+  std::vector<Interval> bounds;  ///< {scan} chi-square bounds of the average
+  double share_inside = 0.0;     ///< share inside the bounds, of the scans with a degree of freedom
+  /// NIS over degrees of freedom: that of the verdict if it judges the size, else that of all runs
+  /// and scans together.
+  double ratio = kNaN;
+  /// Verdict on size, stretches and scans if the innovations are white. If they are not, it is on
+  /// the size by the means of runs, or untested for fewer than kFewestRunsOfSize runs.
   Verdict verdict;
-  std::vector<double> autocorrelation;  ///< {lag - 1} of the NIS, over all runs; NaN: not tested
-  /// {lag - 1} bound that white innovations exceed at no lag with the probability of the level.
+  /// {lag - 1} autocorrelation of the NIS over all runs; NaN if not tested.
+  std::vector<double> autocorrelation;
+  /// {lag - 1} bound of the autocorrelation; white innovations stay within it at all lags with the
+  /// probability of the level.
   std::vector<double> white_bound;
-  std::size_t worst_lag = 0;  ///< with the largest ratio of the two; 0: no lag is tested
+  /// Lag with the largest ratio of autocorrelation to bound; 0 if none is tested.
+  std::size_t worst_lag = 0;
   LargestInnovation largest;
 
   Whiteness whiteness() const;
-  /// Whether the innovations have another whiteness without the largest one, or their size is shown
-  /// to be off only with it or only without it.
+  /// Returns whether the largest innovation decides a finding: without it the whiteness is another
+  /// one, or only with it or only without it the size is shown to be off.
   bool are_decided_by_largest() const;
 };
 
-/// "white, consistent", "not white, size optimistic", "not white, size not judged", ...
+/// The findings in words: "white, consistent", "not white, size optimistic", "not white, size not
+/// judged", ...
 std::string whiteness_in_words(Whiteness whiteness, Answer answer);
 
 std::string whiteness_in_words(const Innovations& found);
 
 /// The run with the largest innovation.
 struct LargestRun {
-  double deviate = 0.0;  ///< of that innovation: standard normal if the filter is consistent
+  /// Normal score of that innovation: standard normal for a consistent filter.
+  double deviate = 0.0;
   std::uint64_t run = 0;
   std::uint64_t scan = 0;
-  double time = 0.0;  ///< [s] of the scan
+  double time = 0.0;  ///< [s] time of the scan
   std::vector<double> nis;
   std::vector<std::uint32_t> dof;
   static constexpr auto members() {
@@ -88,12 +95,12 @@ class InnovationSums {
  public:
   explicit InnovationSums(std::size_t scans) : others_(scans) {}
 
-  /// The innovations of the run of this number: {scan} each, `times` [s].
+  /// Adds the innovations of run number `run`: `times` [s], `nis` and `dof`, all {scan}.
   void add(std::uint64_t run, std::span<const double> times, std::span<const double> nis,
            std::span<const std::uint32_t> dof);
   bool empty() const { return !largest_; }
-  /// There must be an innovation. `times` [s] of the scans; `level` of the whiteness and of bounds,
-  /// `within` the margin.
+  /// The test. There must be an innovation. `times` [s] of the scans; `level` of the whiteness and
+  /// of bounds, `within` the margin.
   Innovations result(std::span<const double> times, double level, double within) const;
   static constexpr auto parts() {
     using Sums = InnovationSums;
@@ -104,8 +111,8 @@ class InnovationSums {
  private:
   /// Sums over pairs of scans that both have innovations, over all runs.
   struct Products {
-    double n = 0.0;        ///< pairs
-    double both = 0.0;     ///< sum of all members, two of each pair
+    double n = 0.0;        ///< number of pairs
+    double both = 0.0;     ///< sum over all pairs of both members
     double product = 0.0;  ///< sum of the products
     double mean_product(double mean) const { return product / n - mean * both / n + mean * mean; }
     static constexpr auto parts() {
@@ -120,22 +127,24 @@ class InnovationSums {
     static constexpr auto parts() { return std::tuple(added(&Totals::nis_, &Totals::products_)); }
 
    private:
-    /// Runs with an innovation.
+    /// Number of runs with an innovation.
     std::uint64_t runs() const { return nis_.ratios().n; }
     void add_products(std::span<const double> nis, std::span<const std::uint32_t> dof);
     void find_correlations(double level, Innovations& result) const;
     void judge_size(std::span<const double> times, double level, double within,
                     Innovations& result) const;
 
-    SummedError nis_;                 ///< {scan}
+    SummedError nis_;                 ///< {scan} sums of the NIS
     std::vector<Products> products_;  ///< {lag} from 0
-    /// {scan} of the run at hand, the last one first: deviations, and 1 where there is one.
+    /// {scan} deviations of the run that is added, the last scan first, and 1 where there is a
+    /// deviation.
     std::vector<double> deviations_, is_there_;
   };
   void merge(InnovationSums& next);
 
-  Totals others_;                      ///< of all runs but that one
-  std::optional<LargestRun> largest_;  ///< which is added with its innovation and without it
+  Totals others_;  ///< sums over all runs except that of `largest_`
+  /// Run that is counted with its largest innovation and without it.
+  std::optional<LargestRun> largest_;
 };
 
 }  // namespace montecarta::analysis

@@ -11,18 +11,21 @@
 
 namespace montecarta::analysis {
 
-/// How a verdict is taken that may be one of several in a study.
+/// Settings of a verdict that may be one of several interim analyses of a study.
 struct InterimAnalysis {
-  double level = kUsualLevel;             ///< of all analyses together
-  double within = kUsualMargin;           ///< margin of the verdict
-  std::vector<std::uint64_t> looks = {};  ///< runs at each analysis; empty: there is one
-  double share_of_runs = 1.0;             ///< of the study's that are at hand: less in a shard
+  double level = kUsualLevel;    ///< level of all interim analyses together
+  double within = kUsualMargin;  ///< margin of the verdict
+  /// {interim analysis} number of runs; empty if there is only one.
+  std::vector<std::uint64_t> looks = {};
+  /// Share of the study's runs that are judged: less than 1 in a shard.
+  double share_of_runs = 1.0;
 };
 
-/// The verdict on the errors of `complete` of the `ended` runs of a cell. "Consistent" needs
-/// intervals of the level of this analysis. Where there are several analyses, a filter is refused
-/// by intervals that spend one half of the error probability, and by bets, which hold at every
-/// look, with the other half; of a part of the runs with its share of that half (STATISTICS 18).
+/// The verdict on the errors of `complete` of the `ended` runs of a cell. The answer "consistent"
+/// needs intervals of the level of this analysis. If there are several interim analyses, a filter
+/// is refused by intervals that spend one half of the error probability, and by bets, which hold at
+/// every analysis, with the other half. A shard spends its share of the latter half (STATISTICS
+/// 18).
 Verdict judge(const WholeError& sums, const ErrorNames& names, const InterimAnalysis& analysis,
               std::uint64_t ended, std::uint64_t complete);
 

@@ -10,7 +10,7 @@
 namespace montecarta::analysis {
 namespace {
 
-constexpr double kJointFamilies = 2.0;  // size and scans
+constexpr double kJointFamilies = 2.0;  // number of families: size and scans
 
 }  // namespace
 

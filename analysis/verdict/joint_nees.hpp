@@ -16,17 +16,18 @@
 
 namespace montecarta::analysis {
 
-/// Pose and map together over the complete runs of a cell: 1 is expected.
+/// NEES of pose and map together over the complete runs of a cell, divided by the number of
+/// components: its expectation is 1. A row is a scan at which joint estimates are stored.
 struct JointConsistency {
-  std::vector<double> average;      ///< [1] {joint} NEES per component over runs
-  std::vector<Interval> bounds;     ///< {joint} of the average, for all rows together
-  std::vector<double> dimension;    ///< [1] {joint} mean over runs
-  std::vector<std::uint32_t> runs;  ///< {joint} with a defined NEES
-  std::uint64_t samples = 0;        ///< rows x complete runs
-  std::uint64_t undefined = 0;      ///< of them, without a NEES
-  Verdict verdict;                  ///< by size and rows
+  std::vector<double> average;      ///< [1] {row} NEES per component over runs
+  std::vector<Interval> bounds;     ///< {row} bounds of the average, for all rows together
+  std::vector<double> dimension;    ///< [1] {row} number of components, mean over runs
+  std::vector<std::uint32_t> runs;  ///< {row} number of runs with a defined NEES
+  std::uint64_t samples = 0;        ///< number of samples: rows x complete runs
+  std::uint64_t undefined = 0;      ///< number of samples without a NEES
+  Verdict verdict;                  ///< verdict by size and rows
   bool stored = false;              ///< whether the cell has joint estimates
-  std::string missing = {};         ///< why stored estimates were not judged; else empty
+  std::string missing = {};         ///< reason why stored estimates were not judged; else empty
 
   bool is_judged() const { return verdict.answer != Answer::untested; }
 };
@@ -34,12 +35,13 @@ struct JointConsistency {
 /// Adds up complete runs in the order of the calls.
 class JointNeesSums {
  public:
-  /// `times` [s] of the rows.
+  /// Makes sums for rows at `times` [s].
   explicit JointNeesSums(std::span<const double> times);
 
-  /// Adds a run; empty if the run has no joint estimates.
+  /// Adds a run; `run` is empty if it has no joint estimates.
   void add(std::span<const JointScore> run);
-  /// `identities_known`: whether landmarks of map and truth are matched by identity.
+  /// The result at `level`; `identities_known` is whether landmarks of map and truth are matched by
+  /// identity.
   JointConsistency result(double level, bool identities_known, double within = kUsualMargin) const;
   static constexpr auto parts() {
     using Sums = JointNeesSums;
@@ -48,9 +50,10 @@ class JointNeesSums {
 
  private:
   std::vector<double> times_;
-  SummedError nees_;                    ///< {joint}
-  std::vector<double> all_dimensions_;  ///< {joint} also where the NEES is not defined
-  std::uint64_t n_runs_ = 0;            ///< with joint estimates
+  SummedError nees_;  ///< {row} sums of the NEES
+  /// {row} sum of the dimensions, also of runs without a defined NEES.
+  std::vector<double> all_dimensions_;
+  std::uint64_t n_runs_ = 0;  ///< number of runs with joint estimates
 };
 
 }  // namespace montecarta::analysis

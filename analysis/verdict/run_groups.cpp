@@ -10,8 +10,8 @@
 namespace montecarta::analysis {
 namespace {
 
-/// A variance or a fourth moment that is 0 if the filter is consistent; only too large a one
-/// counts. `written` converts it to the number that readers see.
+/// The test of a variance or a fourth moment that is 0 for a consistent filter; only too large a
+/// one is off. `written` converts it to the number that readers see.
 template <class Written>
 MemberTest excess_test(Family family, const char* name, const Summary& excess, double unit,
                        Written written) {
@@ -42,7 +42,7 @@ void RunGroups::end_group() {
   group_.clear();
 }
 
-/// Keeps the errors alone that all runs of the group have: else sums would differ by their lengths.
+/// Keeps only the errors that all runs of the group have: else sums would differ by their lengths.
 void RunGroups::blank_incomplete() {
   for (std::size_t place = 0; place < group_[0].size(); ++place) {
     const bool is_whole = std::ranges::none_of(
@@ -65,9 +65,9 @@ std::vector<double> RunGroups::products(std::size_t i, std::size_t j) const {
   return parts;
 }
 
-// Errors with heavy tails have large squares together at scans that are near each other. Scales of
-// a run are common to all of it, so that only parts count that are three eighths of the drive
-// apart, of different components if there are several.
+// Errors with heavy tails have large squares together at neighbouring scans, whereas the scale of a
+// run is common to the whole run. So only parts are multiplied that are three eighths of the drive
+// apart, and of different components if there are several.
 double RunGroups::of_different_parts(std::span<const double> x, std::span<const double> y) const {
   const std::size_t stretches = ends_.size();
   double sum = 0.0;
@@ -88,8 +88,8 @@ double RunGroups::of_different_parts(std::span<const double> x, std::span<const 
   return sum;
 }
 
-// Half the squared difference of the sums of squares of two runs has their variance as its mean; of
-// Gaussian errors that is twice the squared product of the errors.
+// Half the squared difference of two runs' sums of squares has their variance as its mean; for
+// Gaussian errors the mean is also twice the squared product of the errors.
 void RunGroups::add_spread() {
   std::vector<std::vector<double>> squares;
   for (std::size_t i = 0; i < kRuns; ++i) squares.push_back(products(i, i));
@@ -109,8 +109,8 @@ void RunGroups::add_spread() {
   spread_unit_.add(unit / kPairs);
 }
 
-// The fourth moment of a Gaussian error is three times its squared variance, for which the squares
-// of two runs stand, so that scales may differ from scan to scan.
+// The fourth moment of a Gaussian error is three times its squared variance. The product of the
+// squares of two runs estimates that square, so that scales may differ from scan to scan.
 void RunGroups::add_tails() {
   double fourth = 0.0, squared = 0.0, places = 0.0;
   for (std::size_t place = 0; place < group_[0].size(); ++place) {

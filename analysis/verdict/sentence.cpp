@@ -13,7 +13,7 @@
 namespace montecarta::analysis {
 namespace {
 
-constexpr double kMostToPrint = 1e20;  // beyond, a factor has no meaning but that it is large
+constexpr double kMostToPrint = 1e20;  // beyond this a factor only means that it is large
 
 constexpr std::array kSides = {Side::above, Side::below};
 
@@ -41,7 +41,7 @@ std::vector<const Member*> shown_in(const FamilyTest* test, Side direction) {
   return all;
 }
 
-/// The interval at which a member is shown; of all together if none is known.
+/// The interval that shows a member to be off; the simultaneous one if there is none.
 const Interval& shown_interval(const Member& member) {
   return std::isnan(member.shown.lower) ? member.simultaneous : member.shown;
 }
@@ -56,9 +56,9 @@ bool is_within(const Interval& ratio, double margin) {
   return ratio.lower >= 1.0 / margin && ratio.upper <= margin;
 }
 
-/// The leading member for a direction: the size if it is shown, else the member of the least
-/// p-value of other ratios, of single scans only if nothing else is shown. Where the size lies
-/// within the margin, one of the others leads that is shown to be beyond it.
+/// The member that a sentence names for a direction: the size if it is shown, else the shown member
+/// with the least p-value among other ratios; a single scan only if nothing else is shown. If the
+/// size lies within the margin, another member is named that is shown to be beyond it.
 std::optional<ShownMember> leading(const Verdict& verdict, Side direction) {
   std::optional<ShownMember> best;
   for (const FamilyTest& test : verdict.families) {
@@ -82,8 +82,8 @@ std::string from_to(double lower, double upper) {
   return from == to ? from : from + " to " + to;
 }
 
-/// "1.28 to 2.25", larger than 1 in both directions. The size has an interval of its own; others
-/// were chosen among many.
+/// Text of a factor, "1.28 to 2.25", above 1 in both directions. The size has an interval of its
+/// own; other members were chosen among many.
 std::string factor_text(const ShownMember& shown, Side direction, bool is_slight = false) {
   const bool is_alone = shown.test->family == Family::size || is_slight;
   Interval ratio = is_alone ? shown.member->interval : shown_interval(*shown.member);
@@ -91,13 +91,13 @@ std::string factor_text(const ShownMember& shown, Side direction, bool is_slight
   return from_to(std::max(ratio.lower, 1.0), ratio.upper);
 }
 
-/// "forward", "in heading"
+/// Text of a component: "forward", "in heading".
 std::string in_component(const std::string& name) {
   return name == "forward" || name == "left" ? name : "in " + name;
 }
 
-/// " in heading", " from 12 s to 24 s", " in heading from 12 s to 24 s", " at 3 s"; empty for the
-/// size.
+/// Text of a member's component and time: " in heading", " from 12 s to 24 s", " in heading from 12
+/// s to 24 s", " at 3 s"; empty for the size.
 std::string place_of(const Member& member, bool is_of_component) {
   std::string name = is_of_component ? " " + in_component(member.name) : "";
   if (std::isnan(member.from)) return name;
@@ -114,7 +114,8 @@ std::string place_of(const ShownMember& shown) {
   return place_of(*shown.member, is_of_component);
 }
 
-/// "from 138 s on"; empty where no stretch is shown, or where stretches do not differ.
+/// Text of the times at which stretches are off: "from 138 s on"; empty if no stretch is shown, or
+/// if stretches do not differ.
 std::string when(const Verdict& verdict, Side direction) {
   const FamilyTest* stretches = verdict.find(Family::stretch);
   const auto shown = shown_in(stretches, direction);
@@ -147,7 +148,7 @@ std::vector<const Member*> farthest_of(const std::vector<const Member*>& shown) 
   return all;
 }
 
-/// "z, rx and ry"
+/// Text of a list: "z, rx and ry".
 std::string listed(const std::vector<std::string>& names) {
   std::string text;
   for (std::size_t k = 0; k < names.size(); ++k) {
@@ -156,7 +157,8 @@ std::string listed(const std::vector<std::string>& names) {
   return text;
 }
 
-/// ", mainly in heading (1.9 to 2.4 times)"; empty where components do not differ.
+/// Text of the worst components: ", mainly in heading (1.9 to 2.4 times)"; empty if components do
+/// not differ.
 std::string where(const Verdict& verdict, Side direction) {
   const FamilyTest* components = verdict.find(Family::component);
   const auto farthest = farthest_of(shown_in(components, direction));
@@ -175,7 +177,7 @@ std::string where(const Verdict& verdict, Side direction) {
          factor_text({components, farthest.front()}, direction) + " times)";
 }
 
-/// "-0.54 to -0.40", "0.40 or more"
+/// Text of an interval of a signed number: "-0.54 to -0.40", "0.40 or more".
 std::string signed_text(const Interval& found) {
   const auto text = [](double value) { return readable(value, 2); };
   if (std::isinf(found.lower)) return text(found.upper) + " or less";
@@ -183,7 +185,8 @@ std::string signed_text(const Interval& found) {
   return text(found.lower) + " to " + text(found.upper);
 }
 
-/// The shown member of the least p-value with that sign of its estimate; nullptr if there is none.
+/// The shown member with the least p-value among those whose estimate has that sign; nullptr if
+/// there is none.
 const Member* strongest_shown(const FamilyTest& test, bool is_negative) {
   const Member* best = nullptr;
   for (const Member& member : test.members) {
@@ -207,8 +210,8 @@ std::string correlation_of(const Member& member) {
          place_of(member, false);
 }
 
-/// Biases or correlations: over the whole drive if those are shown, else in stretches, of each sign
-/// the strongest one.
+/// Texts of biases or correlations: over the whole drive if those are shown, else of the strongest
+/// stretch of each sign.
 template <class Words>
 void add_zero_means(const Verdict& verdict, Family whole, Family by_stretch, Words words,
                     std::vector<std::string>& all) {
@@ -229,9 +232,9 @@ std::string spread_words(const Verdict& verdict) {
          signed_text(found) + ")";
 }
 
-/// "its errors have heavier tails than a Gaussian (the largest is 12.3 deviations, of heading of
-/// run 17 at 31.0 s)". Runs with scales of their own have such tails too, and are named by their
-/// spread.
+/// Text of heavy tails: "its errors have heavier tails than a Gaussian (the largest is 12.3
+/// deviations, of heading of run 17 at 31.0 s)". Runs with scales of their own have such tails too,
+/// and are described by their spread.
 std::string tail_words(const Verdict& verdict) {
   const FamilyTest* test = verdict.find(Family::tails);
   if (test == nullptr || !test->is_rejected || !spread_words(verdict).empty()) return "";
@@ -242,7 +245,7 @@ std::string tail_words(const Verdict& verdict) {
          name_of(largest) + ")";
 }
 
-/// Biases and correlations, in the order of their lengths.
+/// Texts of biases and correlations, in the order of their lengths.
 std::vector<std::string> means_words(const Verdict& verdict) {
   std::vector<std::string> all;
   add_zero_means(verdict, Family::bias, Family::bias_by_stretch, bias_of, all);
@@ -259,7 +262,8 @@ std::string joined(const std::vector<std::string>& phrases) {
   return text;
 }
 
-/// Empty if bets refuse nothing. They do not say which ratio is off.
+/// Text of a refusal by bets, which do not name the ratio that is off; empty if bets refuse
+/// nothing.
 std::string bet_words(const Verdict& verdict) {
   if (!verdict.refused_by_bets) return "";
   const bool is_above = verdict.refused_by_bets == Side::above;
@@ -269,8 +273,9 @@ std::string bet_words(const Verdict& verdict) {
          (is_above ? " times what it claims" : " times smaller than it claims");
 }
 
-/// "on average its squared errors are 1.67 times what it claims (95 %: 1.28 to 2.25), shown from
-/// 138 s on, mainly forward (2.1 to 3.4 times)"; empty if nothing is shown in this direction.
+/// Text of all ratios that are off in one direction: "on average its squared errors are 1.67 times
+/// what it claims (95 %: 1.28 to 2.25), shown from 138 s on, mainly forward (2.1 to 3.4 times)";
+/// empty if nothing is shown in this direction.
 std::string ratio_sentence(const Verdict& verdict, Side direction) {
   const auto shown = leading(verdict, direction);
   const bool is_above = direction == Side::above;
@@ -287,7 +292,7 @@ std::string ratio_sentence(const Verdict& verdict, Side direction) {
          (time.empty() ? "" : ", shown " + time) + where(verdict, direction);
 }
 
-/// Everything that is shown, the spread between runs first where directions differ.
+/// Text of everything that is shown, with the spread between runs first if directions differ.
 std::string shown_sentence(const Verdict& verdict) {
   const std::string spread = spread_words(verdict), above = ratio_sentence(verdict, Side::above),
                     below = ratio_sentence(verdict, Side::below);
@@ -301,7 +306,7 @@ std::string shown_sentence(const Verdict& verdict) {
   return joined(phrases);
 }
 
-/// "NEES 1.28 to 2.25 times too large in heading"
+/// Text of the leading ratio in one direction: "NEES 1.28 to 2.25 times too large in heading".
 std::string ratio_words(const Verdict& verdict, Side direction) {
   const auto shown = leading(verdict, direction);
   if (!shown) return "";
@@ -312,7 +317,7 @@ std::string ratio_words(const Verdict& verdict, Side direction) {
          (time.empty() ? "" : ", " + time);
 }
 
-/// "; also bias, between runs": families that are shown besides.
+/// Text of further families that are shown: "; also bias, between runs".
 std::string also_words(const Verdict& verdict) {
   std::string names;
   for (const Family family :
@@ -334,8 +339,8 @@ std::string shown_words(const Verdict& verdict) {
   return ratios + "; also " + also;
 }
 
-/// ", slightly optimistic (1.02 to 1.06)", ", though with a bias in heading of ..." where a
-/// deviation within the margin is shown.
+/// Text of a deviation that is shown within the margin: ", slightly optimistic (1.02 to 1.06)", ",
+/// though with a bias in heading of ...".
 std::string slight_words(const Verdict& verdict) {
   std::string words;
   for (const Side direction : kSides) {
@@ -352,7 +357,8 @@ std::string slight_words(const Verdict& verdict) {
   return words + ", though " + (phrases.front().starts_with('a') ? "with " : "") + listed(phrases);
 }
 
-/// "3 of 300 runs failed, 20 of 9600 samples are unusable"; empty if there are none.
+/// Text of failures: "3 of 300 runs failed, 20 of 9600 samples are unusable"; empty if there are
+/// none.
 std::string exceptions_of(const Verdict& found) {
   std::string words;
   if (found.failed > 0) {
@@ -371,7 +377,7 @@ std::string within_words(const Verdict& verdict) {
   return "consistent within " + exact_text(verdict.within);
 }
 
-/// "about 130 more runs decide"
+/// Text of the further runs needed: "about 130 more runs decide".
 std::string more_runs_words(const Verdict& verdict) {
   if (complete_runs(verdict) < kFewestRunsOfAPlan) {
     return "take at least " + std::to_string(kFewestRunsOfAPlan) + " runs";
@@ -380,7 +386,7 @@ std::string more_runs_words(const Verdict& verdict) {
   return "about " + std::to_string(*verdict.more_runs) + " more runs decide";
 }
 
-/// Of a deviation that is shown, but not to be beyond the margin.
+/// Text of a deviation that is shown, but not shown to be beyond the margin.
 std::string open_words(const Verdict& verdict) {
   return "it is not shown to be beyond the margin of " + exact_text(verdict.within) + ": " +
          more_runs_words(verdict);
@@ -404,7 +410,7 @@ std::string answer_words(const Verdict& verdict) {
   }
 }
 
-/// "in every component and in every eighth of the drive", as far as these were judged.
+/// Text of the parts that were judged: "in every component and in every eighth of the drive".
 std::string judged_parts(const Verdict& verdict) {
   const FamilyTest* bias = verdict.find(Family::bias);
   if (bias == nullptr) return " on average";
@@ -416,7 +422,8 @@ std::string judged_parts(const Verdict& verdict) {
   return parts;
 }
 
-/// "; correlations were not judged"; empty if everything was.
+/// Text of the parts that were not judged: "; correlations were not judged"; empty if everything
+/// was.
 std::string not_judged(const Verdict& verdict) {
   const FamilyTest* bias = verdict.find(Family::bias);
   if (bias == nullptr) return "; its components were not judged";
@@ -449,7 +456,7 @@ std::string undecided_words(const Verdict& verdict) {
   return joined({words, scans_alone_words(verdict), more_runs_words(verdict), tail_words(verdict)});
 }
 
-/// What the tests say.
+/// Text of the findings of the tests.
 std::string tested_words(const Verdict& verdict) {
   const std::string slightly = is_slight(verdict) ? "slightly " : "";
   const std::string scans = scans_alone_words(verdict);
@@ -472,7 +479,8 @@ std::string tested_words(const Verdict& verdict) {
   return "not tested: no complete run has a covariance that can be judged";
 }
 
-/// "z and rx have errors of up to 3e-08 and 1e-09 although their reported deviation is 0"
+/// Text of errors of exact components: "z and rx have errors of up to 3e-08 and 1e-09 although
+/// their reported deviation is 0".
 std::string exact_words(const Verdict& verdict) {
   const auto& all = verdict.beside.exact;
   std::vector<std::string> names, errors;

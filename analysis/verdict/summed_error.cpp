@@ -13,8 +13,8 @@
 namespace montecarta::analysis {
 namespace {
 
-/// The law of a mean of so many squares of independent standard normal variables, for many means:
-/// their number is nearly always the same.
+/// The law of the mean of `freedom` squares of independent standard normal variables. Results are
+/// kept, since `freedom` is nearly always the same.
 class ChiSquareLaw {
  public:
   /// Two-sided p-value of a mean.
@@ -46,9 +46,9 @@ MemberTest exact_test(Family family, Member member, double freedom,
           [law, freedom, ratio](double level) { return law->interval(freedom, ratio, level); }};
 }
 
-/// A scan is off if neither the exact law of Gaussian errors nor the runs explain it: the runs know
-/// no tails of errors, and the exact law knows Gaussian ones only. Fewer than three runs say
-/// nothing.
+/// A scan is off if neither the exact law of Gaussian errors nor the variation between runs
+/// explains its ratio: the runs do not show the tails of errors, and the exact law holds only for
+/// Gaussian ones. Fewer than three runs show no variation.
 MemberTest with_runs(MemberTest exact, const RunMean& runs, std::size_t n) {
   if (n < kFewestJudgedRuns) return exact;
   exact.member.p = std::max(exact.member.p, runs.p_value(1.0));
@@ -91,7 +91,8 @@ double SummedError::common_skewness() const {
   for (const Scan& scan : scans_) {
     const Summary runs = scan.runs.result();
     if (!(runs.sd > 0.0) || std::isnan(runs.skewness)) continue;
-    const double deviation = runs.sd / runs.mean;  // so that scans of other sizes count alike
+    // Relative, so that scans of any size have equal weight.
+    const double deviation = runs.sd / runs.mean;
     cubes += runs.skewness * deviation * deviation * deviation;
     squares += deviation * deviation;
     n += 1.0;

@@ -101,10 +101,11 @@ bool is_outside(const Interval& interval, const Interval& margin) {
   return interval.lower > margin.upper || interval.upper < margin.lower;
 }
 
-/// What the answer "consistent" needs of the members of a family.
+/// The condition on the members of a family for the answer "consistent".
 enum class Deviation {
-  is_inside,       ///< shown to be within the margin
-  is_not_outside,  ///< not shown to be beyond it: they are too many to be shown inside
+  is_inside,  ///< all members are shown to be within the margin
+  /// No member is shown to be beyond the margin: there are too many to be shown inside.
+  is_not_outside,
   none
 };
 
@@ -123,8 +124,8 @@ Deviation claim_of(Family family) {
   }
 }
 
-/// The range of negligible deviations of members of a family, for a margin of ratios. A bias b adds
-/// b^2 to a ratio.
+/// The range of negligible values of members of a family, for a margin of ratios. A bias b adds b^2
+/// to a ratio.
 Interval margin_of(Family family, double within) {
   if (is_ratio(family)) return {1.0 / within, within};
   const bool is_bias = family == Family::bias || family == Family::bias_by_stretch;
@@ -184,11 +185,11 @@ bool is_refused(const Verdict& verdict) {
          });
 }
 
-/// A scale on which intervals are symmetric.
+/// Converts a value to the scale on which intervals are symmetric.
 double on_scale(Family family, double value) { return is_ratio(family) ? std::log(value) : value; }
 
-/// The shorter way from the estimate to an end of an interval: what skewness adds to the longer one
-/// goes away faster than the rest with more runs.
+/// The shorter of the distances from the estimate to the ends of its interval: the part of the
+/// longer one that comes from skewness decreases faster than the rest with more runs.
 double half_of(Family family, const Member& member, const Interval& interval) {
   const double estimate = on_scale(family, member.estimate);
   return std::min(on_scale(family, interval.upper) - estimate,
@@ -196,21 +197,22 @@ double half_of(Family family, const Member& member, const Interval& interval) {
 }
 
 /// Factor by which the number of runs must grow until the interval of a member lies within the
-/// margin, if the true value is where the estimate is, less the part of its distance from the right
-/// one that chance explains. `chance` is that of the farthest of all members, in half intervals.
+/// margin. The true value is taken to be the estimate, moved towards the right value by the part of
+/// the distance that chance explains. `chance` is that of the farthest of all members, in half
+/// intervals.
 double growth_until_inside(Family family, const Member& member, double within, double chance) {
   const Interval margin = margin_of(family, within);
   if (claim_of(family) != Deviation::is_inside || is_inside(member.interval, margin)) return 1.0;
   const double half = half_of(family, member, member.interval);
   const double distance = std::abs(on_scale(family, member.estimate));
-  constexpr double kBeyondChance = 1.5;  // a deviation that chance hardly explains
+  constexpr double kBeyondChance = 1.5;  // chance hardly explains a larger deviation
   const double room =
       on_scale(family, margin.upper) - std::max(0.0, distance - kBeyondChance * chance * half);
   return room > 0.0 ? std::pow((1.0 + chance) * half / room, 2) : kNaN;
 }
 
-/// The same until a member is shown to be beyond the margin; NaN if chance explains that its
-/// estimate is.
+/// Factor by which the number of runs must grow until a member is shown to be beyond the margin;
+/// NaN if chance explains that its estimate is beyond.
 double growth_until_outside(Family family, const Member& member, double within, double chance) {
   if (claim_of(family) == Deviation::none) return kNaN;
   const double own = half_of(family, member, member.interval);
@@ -220,10 +222,10 @@ double growth_until_outside(Family family, const Member& member, double within, 
   return beyond > 0.0 ? std::pow(half / beyond, 2) : kNaN;
 }
 
-/// The deviation that the farthest of so many estimates exceeds in half of studies, in halves of
-/// their intervals.
+/// The deviation, in halves of intervals, that the farthest of `members` estimates exceeds in half
+/// of the studies.
 double chance_of_farthest(double members, double level) {
-  const double inside = std::pow(0.5, 1.0 / members);  // probability of each
+  const double inside = std::pow(0.5, 1.0 / members);  // probability of each to be inside
   return normal_quantile(0.5 + 0.5 * inside) / normal_quantile(0.5 + 0.5 * level);
 }
 

@@ -19,7 +19,8 @@ constexpr std::size_t kFewestKeptRuns = 50, kMostKeptRuns = 256;
 
 constexpr std::size_t kMostKeptErrors = 8'000'000;  // 64 MB
 
-/// Shorter sequences of errors may be equal by chance, since files have few digits.
+/// The fewest errors in which a repeat is detected. Shorter sequences may be equal by chance, since
+/// files have few digits.
 constexpr std::size_t kFewestErrorsOfARepeat = 8;
 
 std::vector<std::size_t> ends_of_stretches(std::size_t scans) {
@@ -29,7 +30,7 @@ std::vector<std::size_t> ends_of_stretches(std::size_t scans) {
   return ends;
 }
 
-/// Numbers of one run, {number}, in one stretch and in the whole drive.
+/// {number} Means of one run in single stretches and over the whole drive.
 class Means {
  public:
   explicit Means(std::size_t numbers) : whole_(numbers), stretch_(numbers) {}
@@ -41,7 +42,7 @@ class Means {
       whole_[k].add(std::exchange(stretch_[k], {}));
     }
   }
-  /// Over the whole drive.
+  /// Mean over the whole drive.
   double mean(std::size_t number) const { return whole_[number].mean(); }
   template <class OverDrive>
   void end_run(std::vector<OverDrive>& over_runs) {
@@ -52,7 +53,7 @@ class Means {
   std::vector<MeanOfRun> whole_, stretch_;
 };
 
-/// {scan} NaN where there is nothing to sum.
+/// {scan} Sums; NaN where there is nothing to sum.
 std::vector<double> sums_of(std::span<const MeanOfRun> ratios) {
   std::vector<double> sums;
   for (const MeanOfRun& ratio : ratios) sums.push_back(ratio.n > 0.0 ? ratio.sum : kNaN);
@@ -65,7 +66,7 @@ std::vector<double> numbers_of(std::span<const MeanOfRun> ratios) {
   return numbers;
 }
 
-/// The same family in single stretches.
+/// The family that judges the same quantity in single stretches.
 Family by_stretch(Family family) {
   return family == Family::component ? Family::component_by_stretch
          : family == Family::bias    ? Family::bias_by_stretch
@@ -118,8 +119,8 @@ void WholeError::add(const WhitenedRun& run, std::span<const double> nees) {
   if (!has_pairs() && whitened_.size() < most_kept_runs()) whitened_.push_back(run.whitened);
 }
 
-/// {scan} Sum and number of the squares of a run: of L^-1 e where there is one, so that components
-/// that are known exactly do not count, else of the NEES in the range of the covariance.
+/// {scan} Sum and number of the squares of a run: of L^-1 e if it is known, so that components that
+/// are known exactly are not counted, else the NEES in the range of the covariance.
 std::vector<MeanOfRun> WholeError::ratios_of(const WhitenedRun& run,
                                              std::span<const double> nees) const {
   std::vector<MeanOfRun> ratios(nees.size());
@@ -206,7 +207,8 @@ void WholeError::Largest::merge(const Largest& next) {
   samples = all;
 }
 
-/// Runs whose errors are the same bit by bit have the same fingerprint, others hardly ever.
+/// Adds a fingerprint of the errors: equal for runs whose errors are equal bit by bit, and hardly
+/// ever for others.
 void WholeError::add_fingerprint(const WhitenedRun& run) {
   std::uint64_t hash = 0;
   std::size_t n = 0;
@@ -251,8 +253,8 @@ void WholeError::add_tests(const OverDrive& number, const std::string& name,
   }
 }
 
-/// The part of the mean product of two components that their biases make: in a stretch, or over the
-/// whole drive, of which `stretch` is the number of stretches.
+/// The part of the mean product of two components that comes from their biases, in a stretch, or
+/// over the whole drive if `stretch` is the number of stretches.
 double WholeError::product_of_biases(std::size_t a, std::size_t b, std::size_t stretch) const {
   const auto bias = [&](std::size_t component, std::size_t k) {
     const OverDrive& means = whitened_mean_[component];
@@ -290,10 +292,10 @@ void WholeError::add_correlation_tests(const ErrorNames& names,
   }
 }
 
-/// The largest error of all, by the normal law and the number of errors, whatever their dependence
-/// is: it exceeds so many deviations with that probability at most. It is compared with the size of
-/// errors of its component in its stretch, so that what is optimistic there is no heavy tail by
-/// that.
+/// Tests the largest error of all by the normal law and the number of errors, whatever their
+/// dependence is: the probability that it exceeds this number of deviations is at most the p-value.
+/// It is compared with the size of the errors of its component in its stretch, so that optimism
+/// there is not taken for a heavy tail.
 void WholeError::add_largest_test(const ErrorNames& names, std::vector<MemberTest>& all) const {
   if (largest_.samples == 0) return;
   const OverDrive& squares = component_[largest_.place.component];

@@ -24,7 +24,7 @@ struct ErrorNames {
   std::span<const double> times;
 };
 
-/// A sum of numbers of one run, some of which are NaN.
+/// Sum and count of numbers of one run; NaN is left out.
 struct MeanOfRun {
   double sum = 0.0, n = 0.0;
   void add(double value) {
@@ -36,31 +36,32 @@ struct MeanOfRun {
     sum += other.sum;
     n += other.n;
   }
-  double mean() const { return sum / n; }  ///< NaN of nothing
+  double mean() const { return sum / n; }  ///< NaN without numbers
   void end_run(SummaryOf& runs) const {
     if (n > 0.0) runs.add(mean());
   }
 };
 
 /// Adds up the errors of the complete runs of one cell and tests them (STATISTICS 5). Memory
-/// depends on scans and components, and grows by two numbers with every run; of errors of more than
-/// kMostComponentsInPairs components those of the first runs are kept, at most 256 of them.
+/// depends on scans and components, and grows by two numbers with every run. If there are more than
+/// kMostComponentsInPairs components, the errors of the first runs are kept, at most 256 of them.
 class WholeError {
  public:
-  /// Correlations of errors of more components are judged by direction_tests().
+  /// The most components of which all pairs are tested. For more, direction_tests() judge
+  /// correlations.
   static constexpr std::size_t kMostComponentsInPairs = 6;
 
-  WholeError() = default;  ///< to be read
+  WholeError() = default;  ///< empty sums, to be filled by a SumReader
   WholeError(std::size_t dimension, std::size_t scans);
 
-  /// One run, with its NEES {scan}, which is NaN where it is not judged.
+  /// Adds one run with its NEES {scan}, which is NaN where it is not judged.
   void add(const WhitenedRun& run, std::span<const double> nees);
-  /// The families that apply, judged together at `level`; of fewer than kFewestJudgedRuns runs the
-  /// scans alone.
+  /// The families that apply, judged together at `level`; only the scans for fewer than
+  /// kFewestJudgedRuns runs.
   std::vector<FamilyTest> families(double level, const ErrorNames& names) const;
   /// The side of the margin on which bets on the ratios of runs refuse the filter (STATISTICS 18).
   std::optional<Side> refused_by_bets(double margin, double level) const;
-  /// What is told beside the tests.
+  /// Findings that are in no test.
   BesideTests beside_tests(const ErrorNames& names) const;
   static constexpr auto parts() {
     using Sums = WholeError;
@@ -73,7 +74,7 @@ class WholeError {
   }
 
  private:
-  /// A number of a run, over the whole drive and in each of its stretches, over runs.
+  /// Summaries over runs of a number over the whole drive, and in each of its stretches.
   struct OverDrive {
     SummaryOf whole;
     std::vector<SummaryOf> stretch;
@@ -96,7 +97,7 @@ class WholeError {
     };
     double deviations = 0.0;
     ErrorPlace place = {};
-    std::uint64_t samples = 0;  ///< among which it is the largest
+    std::uint64_t samples = 0;  ///< number of errors among which it is the largest
     void add(double error, const ErrorPlace& where);
     void merge(const Largest& next);
     static constexpr auto members() {
@@ -125,19 +126,23 @@ class WholeError {
   void add_largest_test(const ErrorNames& names, std::vector<MemberTest>& all) const;
 
   std::size_t dimension_ = 0;
-  std::vector<std::size_t> ends_;  ///< {stretch} behind its last scan
+  std::vector<std::size_t> ends_;  ///< {stretch} 1 + its last scan
   SummedError nees_;
-  std::vector<SummaryOf> stretch_;           ///< {stretch} ratio of a run
-  std::vector<SummaryOf> against_run_;       ///< {stretch} less the ratio of the whole run
+  std::vector<SummaryOf> stretch_;  ///< {stretch} ratio of a run
+  /// {stretch} ratio of a run minus its ratio over the whole run.
+  std::vector<SummaryOf> against_run_;
   std::vector<OverDrive> component_, bias_;  ///< {component}
   std::vector<OverDrive> correlation_;       ///< {pair of components} products of whitened errors
-  std::vector<OverDrive> whitened_mean_;     ///< {component}, where there are pairs
+  /// {component} means of whitened errors, if pairs are tested.
+  std::vector<OverDrive> whitened_mean_;
   RunGroups groups_;
-  std::vector<std::vector<Bets>> bets_;  ///< on the size, on each component, on each stretch
+  /// {family}{member} on the size, on each component, on each stretch.
+  std::vector<std::vector<Bets>> bets_;
   Largest largest_;
-  std::vector<Maximum> exact_;  ///< {component} of errors where the deviation is 0
-  std::vector<std::uint64_t> fingerprints_, numbers_;  ///< {run} of its errors; the run's number
-  ErrorsOfRuns whitened_;                              ///< of the first runs
+  std::vector<Maximum> exact_;  ///< {component} largest error where the deviation is 0
+  /// {run} fingerprint of its errors, and number of the run.
+  std::vector<std::uint64_t> fingerprints_, numbers_;
+  ErrorsOfRuns whitened_;  ///< {run} whitened errors of the first runs
 };
 
 }  // namespace montecarta::analysis

@@ -12,7 +12,7 @@
 namespace montecarta::analysis {
 namespace {
 
-using Samples = Eigen::MatrixXd;  // {component, scan}, of scans with errors in all components
+using Samples = Eigen::MatrixXd;  // {component, scan} errors of scans with errors in all components
 
 Samples samples_of(const std::vector<double>& errors, Eigen::Index dimension) {
   const auto scans = static_cast<Eigen::Index>(errors.size()) / dimension;
@@ -46,7 +46,7 @@ Eigen::VectorXd farthest_direction(const Eigen::MatrixXd& products) {
   return solver.eigenvectors().col(farthest);
 }
 
-/// The products of different components of a run along a direction, mean over scans.
+/// Mean over scans of the products of different components of a run along a direction.
 double along(const Eigen::VectorXd& direction, const Samples& run) {
   const Eigen::ArrayXd squares =
       (direction.transpose() * run).array().square().transpose() -
@@ -77,13 +77,13 @@ std::vector<MemberTest> direction_tests(const ErrorsOfRuns& runs, double ratio,
     if (samples.cols() > 0) whole.push_back(std::move(samples));
   }
   std::vector<MemberTest> all;
-  constexpr std::size_t kFewestRunsOfDirections = 6;  // three that choose and three that judge
+  constexpr std::size_t kFewestRunsOfDirections = 6;  // three runs choose and three runs judge
   if (whole.size() < kFewestRunsOfDirections) return all;
   for (const std::size_t chosen_by : {std::size_t{0}, std::size_t{1}}) {
     const Eigen::VectorXd direction =
         farthest_direction(mean_products(whole, chosen_by, dimension));
     const auto [a, b] = pair_of(direction);
-    const double sign = direction(a) * direction(b) < 0.0 ? -1.0 : 1.0;  // that of the pair
+    const double sign = direction(a) * direction(b) < 0.0 ? -1.0 : 1.0;  // sign of the pair
     SummaryOf values;
     for (std::size_t i = 1 - chosen_by; i < whole.size(); i += 2) {
       values.add(sign * along(direction, whole[i]));

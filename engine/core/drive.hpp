@@ -18,7 +18,7 @@ namespace montecarta::engine {
 /// The control that a filter is given for one step. The vehicle defines the number of its
 /// components and their meaning (EQUATIONS 1); components that it does not have are 0.
 struct Control {
-  static constexpr std::size_t kMost = 3;  ///< components
+  static constexpr std::size_t kMost = 3;  ///< largest number of components
   std::array<double, kMost> values{};
 
   double operator[](std::size_t i) const { return values[i]; }
@@ -34,7 +34,7 @@ struct Control {
 /// One measurement of a landmark. The sensor defines the number of its components and their meaning
 /// (EQUATIONS 2); components that it does not have are 0.
 struct Detection {
-  static constexpr std::size_t kMost = 2;            ///< components
+  static constexpr std::size_t kMost = 2;            ///< largest number of components
   static constexpr std::int32_t kClutter = -1;       ///< identity of a false alarm
   static constexpr std::int32_t kUnidentified = -2;  ///< identity if it is not known
   std::array<double, kMost> values{};                ///< for instance range [m], bearing [rad]
@@ -51,11 +51,11 @@ using Scan = std::span<const Detection>;
 /// An independent measurement of the vehicle's path, against which a recorded drive is evaluated.
 struct ReferencePath {
   std::string name;                       ///< for instance "gps"
-  std::vector<double> time;               ///< [s] of each fix, increasing
-  std::vector<Eigen::Vector2d> position;  ///< [m] of each fix
-  std::vector<double> heading;            ///< [rad] of each fix; empty if it is not measured
-  /// Covariance [m, m, rad]^2 of the error of each fix; empty if it is not known. Without headings,
-  /// only the block of the position counts.
+  std::vector<double> time;               ///< [s] {fix} increasing
+  std::vector<Eigen::Vector2d> position;  ///< [m] {fix}
+  std::vector<double> heading;            ///< [rad] {fix} empty if it is not measured
+  /// {fix} covariance of the error, (m, m, rad)^2; empty if it is not known. Without headings, only
+  /// the block of the position counts.
   std::vector<Eigen::Matrix3d> covariance = {};
 
   /// Number of components of a fix: x, y and, if there are headings, the heading.
@@ -64,13 +64,13 @@ struct ReferencePath {
 
 /// The part that all runs of a study share: the times of steps and scans, and the landmarks.
 struct Itinerary {
-  std::vector<double> step_time;           ///< [s] at the end of each control step, one per step
+  std::vector<double> step_time;           ///< [s] {step} time at its end
   std::vector<std::uint32_t> scan_step;    ///< {scan} index of the step after which it is taken
   std::vector<Eigen::Vector2d> landmarks;  ///< [m] true positions, by identity; empty if unknown
-  std::vector<Eigen::Vector2d> waypoints;  ///< [m] for figures only; may be empty
+  std::vector<Eigen::Vector2d> waypoints;  ///< [m] way-points, for figures only; may be empty
   Pose start;  ///< pose before the first step, which the filter knows exactly
-  std::vector<ReferencePath> references;  ///< only for a recorded drive
-  std::size_t moving_controls = 1;        ///< number of first components for Control::stands()
+  std::vector<ReferencePath> references;  ///< references of a recorded drive
+  std::size_t moving_controls = 1;        ///< number of leading components for Control::stands()
   bool has_truth = true;                  ///< true if drives have true poses, unlike recorded ones
 
   std::size_t steps() const { return step_time.size(); }
@@ -83,9 +83,9 @@ struct Itinerary {
 
 /// The input and the truth of one run. Buffers keep their memory from run to run.
 struct Drive {
-  std::vector<Control> controls;          ///< one per step, as given to the filter
-  std::vector<Pose> truth;                ///< one per step, after the step; empty if unknown
-  std::vector<Detection> detections;      ///< those of all scans, in order
+  std::vector<Control> controls;          ///< {step} control given to the filter
+  std::vector<Pose> truth;                ///< {step} pose after the step; empty if unknown
+  std::vector<Detection> detections;      ///< detections of all scans, in order
   std::vector<std::uint32_t> scan_begin;  ///< scans() + 1 offsets into `detections`
 
   Scan scan(std::size_t s) const {

@@ -29,7 +29,7 @@ struct ColumnSelection {
   bool map = false;            ///< map_mean, map_covariance, map_seen, at every scan
   bool final_map = false;      ///< final_map_mean, final_map_covariance, final_map_seen, at the end
   bool joint = false;          ///< joint_mean, joint_covariance of filters with a joint estimate
-  bool observability = false;  ///< own columns of filters about their observability
+  bool observability = false;  ///< filters' own columns about observability
   std::size_t joint_scans = 16;  ///< record.joint_scans: number of scans (joint_scans_of())
   bool scans_only = false;       ///< record.rate = scan: rows of `time` only at scans
   /// record.full_runs: in_full() is stored of this number of runs, the first ones of the study.
@@ -59,10 +59,11 @@ struct Cell {
   std::string long_name;  ///< for instance "FastSLAM II, 100 particles"
   std::size_t particles = 0;  ///< 0 if it is not a particle filter
   Capabilities reports;
-  std::size_t landmarks = 0;                                  ///< number of rows of the map columns
-  std::optional<ImportedError> imported = {};                 ///< nullopt for our own filters
-  std::vector<std::pair<std::string, std::string>> settings;  ///< all, resolved, for the file
-  std::function<std::unique_ptr<SlamFilter>()> make_filter;   ///< callable from any thread
+  std::size_t landmarks = 0;                   ///< number of rows of the map columns
+  std::optional<ImportedError> imported = {};  ///< nullopt for our own filters
+  /// All resolved settings for the file.
+  std::vector<std::pair<std::string, std::string>> settings;
+  std::function<std::unique_ptr<SlamFilter>()> make_filter;  ///< callable from any thread
 };
 
 /// Called between two rounds (monte_carlo.hpp), when the first `runs` runs of a cell have ended.
@@ -76,17 +77,19 @@ struct StudyPlan {
   std::string name;
   std::string title;  ///< one line for figures and the file's title attribute
   std::uint64_t seed = 0;
-  std::uint64_t runs = 0;       ///< number in the whole study
-  std::uint64_t first_run = 0;  ///< this file holds runs [first_run, last_run)
+  std::uint64_t runs = 0;       ///< number of runs of the whole study
+  std::uint64_t first_run = 0;  ///< the file holds runs [first_run, last_run)
   std::uint64_t last_run = 0;
   std::vector<Cell> cells;
   ColumnSelection columns;
   std::shared_ptr<const DriveSource> drives;
-  EnoughRuns is_enough;  ///< when a cell stops early; empty: never. Only for files with all runs
+  /// Rule by which a cell stops early; empty: never. Only for files with all runs.
+  EnoughRuns is_enough;
   /// Returns the true landmarks [m] of a run, as many as in the itinerary, if every run has its
   /// own; empty if all runs have those of the itinerary. It may be called from any thread.
   std::function<std::vector<Eigen::Vector2d>(std::uint64_t run)> own_landmarks;
-  std::vector<std::pair<std::string, std::string>> scenario;  ///< resolved settings, for the file
+  /// Resolved settings of the scenario for the file.
+  std::vector<std::pair<std::string, std::string>> scenario;
   std::string resolved_text;  ///< study file with all defaults; its SHA-256 identifies the study
 
   std::uint64_t runs_here() const { return last_run - first_run; }

@@ -40,15 +40,16 @@ class StepContext {
 
   std::uint64_t run() const { return run_; }
   std::uint32_t step() const { return step_; }
-  /// The stream of (study seed, run, step, purpose, index), the same at any time and on any thread.
+  /// The random stream of (study seed, run, step, purpose, index), the same at any time and on any
+  /// thread.
   RngStream stream(Draw purpose, std::uint32_t index) const {
     return RngStream(identity(purpose, index));
   }
   StreamIdentity identity(Draw purpose, std::uint32_t index) const {
     return {seed_, run_, step_, index, purpose};
   }
-  /// Valid for the whole run; nullptr if nothing can stop it. If the flag is set, an exception from
-  /// the filter is not a result, and the run is dropped.
+  /// The flag that stops the run, valid for the whole run; nullptr if nothing can stop it. If it is
+  /// set, an exception from the filter is not a result, and the run is dropped.
   const StopFlag* stop() const { return stop_; }
   /// Calls body(i) for i in [0, count), perhaps in parallel; body(i) may only write its own data.
   template <class Body>
@@ -82,9 +83,9 @@ struct PoseEstimate {
 /// filter are means over its weighted particles. Ignored clutter and unidentified detections are in
 /// none of the five.
 struct AssociationCounts {
-  double correct = 0.0;    ///< matched with its landmark, or initialised a new one
-  double wrong = 0.0;      ///< matched with another landmark
-  double new_again = 0.0;  ///< initialised a landmark that the map has already
+  double correct = 0.0;  ///< detections matched with their landmark, or that initialised a new one
+  double wrong = 0.0;    ///< detections matched with another landmark
+  double new_again = 0.0;  ///< detections that initialised a landmark that the map has already
   double missed = 0.0;     ///< detections of landmarks that were ignored
   double clutter = 0.0;    ///< clutter that was matched or initialised a landmark
 };
@@ -100,7 +101,7 @@ struct ScanReport {
   /// factors.
   double log_likelihood = 0.0;
   double nis = 0.0;           ///< normalised innovation squared, sum over matched detections
-  std::uint32_t nis_dof = 0;  ///< its degrees of freedom
+  std::uint32_t nis_dof = 0;  ///< degrees of freedom of nis
   std::uint32_t numerical_faults =
       0;  ///< number of failed factorisations that were handled by a fallback
   AssociationCounts association = {};
@@ -164,8 +165,8 @@ class SlamFilter {
 /// A number of every scan that only some filters report. The filter declares it here and reports
 /// its value in ScanReport::own.
 struct OwnColumn {
-  std::string name;   ///< as in the file, and in no other column's row of records/columns.cpp
-  std::string group;  ///< group of record.columns that stores it; those of "pose" always are
+  std::string name;   ///< name in the file, which no row of records/columns.cpp has
+  std::string group;  ///< group of record.columns that stores it; "pose" is always stored
   std::string units;  ///< UDUNITS style: "m", "rad", "1"
   std::string long_name;
 };
@@ -177,7 +178,7 @@ struct Capabilities {
   bool mixture = false;                     ///< estimate() has a mixture before sampling
   bool joint = false;                       ///< joint() has an estimate
   bool map = true;                          ///< map() has landmarks
-  std::vector<OwnColumn> own_columns = {};  ///< in the order of ScanReport::own
+  std::vector<OwnColumn> own_columns = {};  ///< own columns, in the order of ScanReport::own
 };
 
 }  // namespace montecarta::engine

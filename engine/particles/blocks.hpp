@@ -14,7 +14,8 @@
 
 namespace montecarta::engine {
 
-/// Number of blocks of kLanesOf<Real> for `particles`; lanes without a particle are called dead.
+/// Number of blocks of kLanesOf<Real> lanes for `particles`; lanes without a particle are called
+/// dead.
 template <class Real>
 constexpr std::size_t blocks_for(std::size_t particles) {
   return (particles + kLanesOf<Real> - 1) / kLanesOf<Real>;
@@ -92,7 +93,8 @@ void copy_lane(const Block& from, Block& to, std::size_t lane) {
 template <class Real>
 class BlockTasks {
  public:
-  /// `per_task` is in blocks. A thread does not pay off for fewer than 256 particles of usual work.
+  /// `per_task` is a number of blocks. A thread does not pay off for fewer than 256 particles of
+  /// usual work.
   explicit BlockTasks(std::size_t blocks, std::size_t per_task = 256 / kLanesOf<Real>)
       : blocks_(blocks), per_task_(per_task) {}
 

@@ -55,11 +55,12 @@ class Genealogy {
   }
 
  private:
-  static constexpr std::size_t kLongest = 256;           // generations
-  static constexpr std::size_t kMostNumbers = 1U << 22;  // 16 MiB
+  static constexpr std::size_t kLongest = 256;           // most generations
+  static constexpr std::size_t kMostNumbers = 1U << 22;  // most indices, 16 MiB
   std::size_t particles_;
-  std::vector<UntouchedColumn<std::uint32_t>> parents_;  // {generation} reused after forget()
-  std::size_t kept_ = 0;                                 // number of generations
+  // {generation} parents; reused after forget().
+  std::vector<UntouchedColumn<std::uint32_t>> parents_;
+  std::size_t kept_ = 0;  // number of generations
   std::uint32_t forgotten_ = 0;
 };
 

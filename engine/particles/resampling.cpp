@@ -60,15 +60,16 @@ std::vector<double> sums_before_parts(const StepContext& context, const Share& s
   return sums;
 }
 
-/// The same for all particles up to `last`. Threads share the work by parts of particles; place(i)
-/// may be called in any order.
+/// Draws the parents for all particles up to `last`. Threads share the work by parts of particles;
+/// place(i) may be called in any order.
 template <class Share, class Place>
 void sweep(const StepContext& context, std::size_t last, const Share& share, const Place& place,
            Parents parents) {
   if (last < kParticlesPerSum)
     return sweep({0, last, 0.0, 0, parents.size()}, share, place, parents);
   const std::vector<double> before = sums_before_parts(context, share, last + 1);
-  const auto first_child = [&](std::size_t part) {  // the first new particle beyond those before
+  // The first new particle after those of earlier parts.
+  const auto first_child = [&](std::size_t part) {
     if (part == before.size()) return parents.size();
     std::size_t first = 0, end = parents.size();
     while (first < end) {

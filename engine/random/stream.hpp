@@ -50,7 +50,7 @@ enum class Draw : std::uint8_t {
   world_detection = 1,   ///< noise on range and bearing, index = landmark
   world_miss = 2,        ///< misses of detections, index = landmark
   world_clutter = 3,     ///< number and position of false alarms
-  world_landmark = 4,    ///< random maps
+  world_landmark = 4,    ///< displacement of landmarks in random maps
   motion_sample = 16,    ///< motion noise of FastSLAM I, index = particle
   pose_proposal = 17,    ///< draw from the proposal, index = particle
   resampling = 18,       ///< index = 0 (systematic) or particle
@@ -64,9 +64,9 @@ enum class Draw : std::uint8_t {
 /// The identity of a stream of random numbers.
 struct StreamIdentity {
   std::uint64_t seed = 0;  ///< seed of the study
-  std::uint64_t run = 0;   ///< < 2^32
+  std::uint64_t run = 0;   ///< number of the run, below 2^32
   std::uint32_t step = 0;
-  std::uint32_t index = 0;  ///< particle, landmark, ...
+  std::uint32_t index = 0;  ///< index of the particle, landmark, ...
   Draw purpose = Draw::test;
 };
 
@@ -76,13 +76,13 @@ class RngStream {
   /// Starts at number 2 `block` of the stream; block < 2^24.
   explicit RngStream(const StreamIdentity& identity, std::uint32_t block = 0);
 
-  /// 64 uniform bits.
+  /// Draws 64 uniform bits.
   std::uint64_t bits();
-  /// Uniform in (0, 1), 52 bits, never 0 or 1.
+  /// Draws a uniform number in (0, 1) with 52 bits, never 0 or 1.
   double uniform();
-  /// Uniform in {0, ..., count - 1}, without bias; count >= 1.
+  /// Draws a uniform number in {0, ..., count - 1}, without bias; count >= 1.
   std::uint32_t below(std::uint32_t count);
-  /// Standard normal (Box-Muller; both numbers of a pair are used, in order).
+  /// Draws a standard normal number (Box-Muller; both numbers of a pair are used, in order).
   double normal();
 
  private:
@@ -169,8 +169,8 @@ template <class Real>
 Pair<Real> normal_pairs(const StreamIdentity& identity, std::uint32_t block) {
   return box_muller(uniform_pairs(identity, block, Real()));
 }
-/// The same for consecutive streams, `kLanesOf<Real>` for each pair. In short loops the processor
-/// computes several pairs at once, which would otherwise wait for each other's bits.
+/// Normal pairs for consecutive streams, `kLanesOf<Real>` for each pair. In short loops the
+/// processor computes several pairs at once, which would otherwise wait for each other's bits.
 template <class Real>
 [[gnu::flatten]] inline void fill_normal_pairs(std::span<Pair<Real>> pairs, StreamIdentity identity,
                                                std::uint32_t block) {

@@ -11,7 +11,7 @@
 namespace montecarta::engine {
 namespace {
 
-/// Names in the order of Axis.
+/// Names of the axes, in the order of Axis.
 constexpr std::array<std::string_view, 13> kAxisNames = {"time",
                                                          "scan",
                                                          "particle",

@@ -18,7 +18,7 @@ namespace montecarta::engine {
 
 /// Definition of the error that the covariance of an imported pose describes (STATISTICS 19).
 struct StoredConvention {
-  const char* name;     ///< as typed by users
+  const char* name;     ///< name that users type
   const char* column;   ///< name of the column of the NEES under this convention
   const char* meaning;  ///< description of that column
 };
@@ -48,7 +48,7 @@ enum class Axis : std::uint8_t {
   joint,  ///< the scans of joint_scans_of()
   state,  ///< x, y, heading, then x and y of each landmark
   state_column,
-  error_component,  ///< of the error of an imported estimate, named in the cell's settings
+  error_component,  ///< components of an imported error, named in the cell's settings
   error_component_column
 };
 /// The scans at which joint estimates are stored. The run of `all` scans is divided into `wanted`
@@ -61,7 +61,7 @@ std::optional<Axis> axis_named(std::string_view name);
 
 /// One dataset of a cell. The shape is that of one run.
 struct Column {
-  std::string name;  ///< as in the file, e.g. "pose_mean"
+  std::string name;  ///< name in the file, e.g. "pose_mean"
   Element element = Element::f64;
   std::vector<Axis> axes;
   std::vector<std::size_t> shape;  ///< one length per axis; empty = one value per run
@@ -75,7 +75,7 @@ struct Column {
 /// A group of columns that a study selects together (record.columns).
 struct ColumnGroup {
   const char* name;
-  bool ColumnSelection::*is_chosen;  ///< nullptr: always stored
+  bool ColumnSelection::*is_chosen;  ///< whether it is stored; nullptr: always
 };
 /// All groups, in the order of `montecarta list columns`.
 std::span<const ColumnGroup> column_groups();
@@ -90,11 +90,11 @@ struct ColumnKind {
   std::vector<Axis> axes;
   const char* units;
   const char* long_name;
-  bool (*applies)(const Cell&) = nullptr;  ///< whether a cell has it; nullptr: all have
+  bool (*applies)(const Cell&) = nullptr;  ///< whether a cell has it; nullptr: always
   /// Takes the number from the report of a scan; nullptr if Recorder fills the column otherwise.
   double (*of_report)(const ScanReport&) = nullptr;
 };
-/// All of them, in the order of the file. The own columns of a filter follow.
+/// All columns, in the order of the file. The own columns of a filter follow.
 std::span<const ColumnKind> column_table();
 
 /// Returns whether a study with `selection` stores the columns of this group.

@@ -374,7 +374,7 @@ OpenResult open_attempt(const fs::path& path, const StudyPlan& plan, const TextP
 
 void rename_finished(OpenResult& attempt, const fs::path& path) {
   std::error_code ignored;
-  if (is_there(path)) {  // another attempt was first
+  if (is_there(path)) {  // another attempt finished first
     fs::remove(attempt.file.path(), ignored);
     return;
   }
@@ -389,7 +389,7 @@ void complete_attempt(OpenResult& attempt, const fs::path& path) {
   try {
     if (!is_there(path)) attempt.file.rename(path, Existing::refuse);
   } catch (const std::runtime_error&) {
-    if (!is_there(path)) throw;  // another attempt was first and has the same bytes
+    if (!is_there(path)) throw;  // another attempt finished first, with the same bytes
   }
   std::error_code ignored;
   for (const fs::path& left : attempts_at(path)) fs::remove(left, ignored);

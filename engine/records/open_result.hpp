@@ -23,10 +23,10 @@ enum class Claim : std::uint8_t { sole, attempt };
 struct OpenResult {
   PosixFile file;  ///< OUT.h5.part, or OUT.h5 itself if it was complete already
   ResultSlabs slabs;
-  std::vector<std::vector<RunStatus>> status;  ///< [cell][run index]
-  std::vector<bool> truth_stored;              ///< [run index]
+  std::vector<std::vector<RunStatus>> status;  ///< {cell}{run index}
+  std::vector<bool> truth_stored;              ///< {run index}
   std::vector<std::string> notes;              ///< messages for the user
-  Existing existing = Existing::refuse;        ///< of an older OUT.h5 when finishing
+  Existing existing = Existing::refuse;        ///< treatment of an older OUT.h5 when finishing
   Claim claim = Claim::sole;
 };
 
@@ -38,8 +38,8 @@ using Fill = std::function<void(const PosixFile&, const ResultSlabs&)>;
 std::uint64_t write_at_once(const std::filesystem::path& path, const ResultDescription& description,
                             const Fill& fill, Existing existing);
 
-/// Why `b`, which describes the file `path`, is not of the same study and layout as `a`, worded
-/// "place: problem (why): remedy"; nullopt if it is. Their runs may differ.
+/// The reason why `b`, which describes the file `path`, is not of the same study and layout as `a`,
+/// worded "place: problem (why): remedy"; nullopt if it is. Their runs may differ.
 std::optional<std::string> difference(const ResultDescription& a, const ResultDescription& b,
                                       const std::filesystem::path& path);
 

@@ -45,7 +45,7 @@ std::string remedy(int error) {
 
 off_t signed_offset(std::uint64_t offset) { return static_cast<off_t>(offset); }
 
-/// Does not wait for the other end if the path is a pipe.
+/// The flags of open(), which does not wait for the other end of a pipe.
 int flags_of(PosixFile::Mode mode) {
   constexpr int always = O_CLOEXEC | O_NONBLOCK;
   switch (mode) {
@@ -64,7 +64,7 @@ bool is_regular(int descriptor) {
   return ::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode);
 }
 
-/// Writes the folder to the disk, without which a new name is not durable.
+/// Writes the folder to the disk, since a new name is not durable before that.
 void sync_folder_of(const std::filesystem::path& path) {
   const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
   const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -182,7 +182,7 @@ void PosixFile::lock() const {
   }
 }
 
-/// False if another process renamed or replaced the file between opening and locking.
+/// Returns false if another process renamed or replaced the file between opening and locking.
 bool PosixFile::still_has_its_name() const {
   struct stat opened {};
   struct stat named {};

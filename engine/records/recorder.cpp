@@ -15,7 +15,7 @@ std::span<T> column(RunRecord& record, std::string_view name) {
   return c ? record.column<T>(*c) : std::span<T>();
 }
 
-/// Row `row` of a column with `width` elements per row; empty if the column is.
+/// Row `row` of a column with `width` elements per row; empty if the column is empty.
 template <class T>
 std::span<T> row_of(std::span<T> column, std::size_t row, std::size_t width) {
   return column.empty() ? column : column.subspan(row * width, width);

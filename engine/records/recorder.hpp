@@ -57,7 +57,7 @@ class Recorder {
 
   /// A column that the filter declares itself.
   struct Own {
-    std::size_t index;  ///< in ScanReport::own
+    std::size_t index;  ///< index in ScanReport::own
     std::span<double> column;
   };
 
@@ -77,8 +77,8 @@ class Recorder {
   std::vector<Reported> reported_;
   std::vector<Own> own_;
   PoseEstimate estimate_;                 ///< the last recorded estimate
-  std::vector<std::uint32_t> ancestors_;  ///< of one scan, before narrowing to 16 bits
-  std::vector<std::optional<LandmarkEstimate>> landmarks_;  ///< of one scan
+  std::vector<std::uint32_t> ancestors_;  ///< ancestors of one scan, before narrowing to 16 bits
+  std::vector<std::optional<LandmarkEstimate>> landmarks_;  ///< map of one scan
 };
 
 }  // namespace montecarta::engine

@@ -13,7 +13,8 @@
 namespace montecarta::engine {
 namespace {
 
-constexpr std::uint64_t kMostRuns = 10'000'000;  // limits the memory for the bookkeeping of a file
+// Limit of the memory for the bookkeeping of a file.
+constexpr std::uint64_t kMostRuns = 10'000'000;
 
 void number_runs(const StudyPlan& plan, ResultDescription& result) {
   if (plan.runs_here() > kMostRuns) {

@@ -27,7 +27,7 @@ struct StoredCell {
   std::string long_name;
   std::size_t particles = 0;
   TextPairs settings;
-  std::vector<Column> columns;    ///< those of every run, then those of the first runs only
+  std::vector<Column> columns;    ///< columns of every run, then those of the first runs only
   std::size_t usual_columns = 0;  ///< number of columns that every run has
 
   std::span<const Column> usual() const { return std::span(columns).first(usual_columns); }
@@ -42,15 +42,15 @@ struct StoredCell {
 
 /// A recorded drive that is one run of the study.
 struct OwnDrive {
-  Pose start;                             ///< before the first step
-  std::vector<double> scan_times;         ///< [s], at most as many as the file has scans
+  Pose start;                             ///< pose before the first step
+  std::vector<double> scan_times;         ///< [s] {scan} at most as many as the file has scans
   std::vector<std::uint32_t> scan_steps;  ///< step after which each scan is taken
-  std::vector<ReferencePath> references;  ///< with the same names in all drives
+  std::vector<ReferencePath> references;  ///< references, with the same names in all drives
 };
 
-/// Runs of which a file has sums over groups, in place of rows.
+/// Runs whose sums over groups a file holds instead of rows.
 struct SummedRuns {
-  std::uint64_t first_run = 0, last_run = 0;  ///< numbers [first_run, last_run)
+  std::uint64_t first_run = 0, last_run = 0;  ///< numbers of the runs: [first_run, last_run)
   std::vector<std::uint64_t> words;           ///< {cell} number of words of all groups
 };
 
@@ -59,22 +59,23 @@ struct SummedRuns {
 struct ResultDescription {
   std::string study_name;
   std::string title;
-  std::string study_text;    ///< resolved study file
-  std::string study_sha256;  ///< of study_text, hexadecimal; the same in all files of one study
+  std::string study_text;  ///< resolved study file
+  std::string
+      study_sha256;  ///< SHA-256 of study_text, hexadecimal; the same in all files of a study
   std::uint64_t seed = 0;
-  std::uint64_t study_runs = 0;     ///< number in the whole study
+  std::uint64_t study_runs = 0;     ///< number of runs of the whole study
   std::uint64_t full_runs = 0;      ///< number of first runs of the study that are stored in full
   std::vector<std::uint64_t> runs;  ///< numbers of the runs in this file, increasing
-  std::vector<double> times;        ///< [s] of the rows of `time`
-  std::vector<double> scan_times;   ///< [s]
+  std::vector<double> times;        ///< [s] {row of `time`}
+  std::vector<double> scan_times;   ///< [s] {scan}
   std::vector<std::uint32_t> scan_steps;   ///< step after which each scan is taken
   std::vector<std::uint32_t> scan_rows;    ///< row of `time` at which each scan is taken
   std::vector<std::uint32_t> joint_scans;  ///< scans at which joint estimates are stored
-  Pose start;                              ///< before the first step
+  Pose start;                              ///< pose before the first step
   std::vector<Eigen::Vector2d> landmarks;  ///< [m] true positions; empty if unknown
-  std::vector<Eigen::Vector2d> waypoints;  ///< [m]; may be empty
-  std::vector<ReferencePath> references;   ///< of a recorded drive
-  /// {run of the study} if every run has its own drive, else empty. With drives, `references` is
+  std::vector<Eigen::Vector2d> waypoints;  ///< [m] way-points; may be empty
+  std::vector<ReferencePath> references;   ///< references of a recorded drive
+  /// {run of the study} drives if every run has its own, else empty. With drives, `references` is
   /// empty, and the times are those of the longest drive.
   std::vector<OwnDrive> drives;
   bool has_truth = true;       ///< whether true poses are stored
@@ -82,7 +83,7 @@ struct ResultDescription {
   TextPairs scenario;
   TextPairs provenance;
   std::vector<StoredCell> cells;
-  std::optional<SummedRuns> sums;  ///< then `runs` are the first of them
+  std::optional<SummedRuns> sums;  ///< sums over groups of runs; `runs` are then the first runs
 
   /// Number of runs of this file that are stored in full, which are its first ones.
   std::size_t full_runs_here() const;

@@ -26,8 +26,8 @@ struct SumGroup;
 /// Every member throws StudyError with file and dataset if the file cannot be read.
 class ResultFile {
  public:
-  /// Throws StudyError if `path` does not exist, is no HDF5 file, or is no montecarta result of a
-  /// known major version.
+  /// Opens a file. Throws StudyError if `path` does not exist, is no HDF5 file, or is no montecarta
+  /// result of a known major version.
   explicit ResultFile(const std::filesystem::path& path);
 
   const std::filesystem::path& path() const { return path_; }
@@ -53,7 +53,7 @@ class ResultFile {
   /// Returns whether errors are known, from true poses or from imported estimates.
   bool has_errors() const;
 
-  std::vector<RunStatus> status(const StoredCell& cell) const;  ///< one per run in this file
+  std::vector<RunStatus> status(const StoredCell& cell) const;  ///< {run of the file}
   /// Throws StudyError if the bytes of run index `i` of `cell`, including its status and true path,
   /// do not match the stored fingerprints. A file without a seal is not checked, because another
   /// program may have rewritten it.
@@ -62,7 +62,7 @@ class ResultFile {
   std::vector<std::uint32_t> failure_steps(const StoredCell& cell) const;
   /// Processor time of each run's own thread over its steps [s]; NaN if missing.
   std::vector<double> cpu_seconds(const StoredCell& cell) const;
-  double wall_seconds() const;  ///< [s] of all sessions
+  double wall_seconds() const;  ///< [s] wall time of all sessions
   /// XXH3 of the stored data of each run.
   std::vector<std::uint64_t> fingerprints(const StoredCell& cell) const;
 
@@ -70,7 +70,7 @@ class ResultFile {
   /// runs.
   bool has_sums() const { return description_.sums.has_value(); }
   std::vector<SumGroup> sum_groups(const StoredCell& cell) const;
-  /// The sums of one of them. Any number of threads may call it.
+  /// The sums over a group. Any number of threads may call it.
   std::vector<std::uint64_t> sums(const SumGroup& group) const;
   /// Processor time of every run in the sums [s].
   std::vector<double> cpu_seconds_in_sums(const StoredCell& cell) const;
@@ -111,10 +111,10 @@ class ResultFile {
   h5::Handle file_;
   PosixFile bytes_;
   ResultDescription description_;
-  /// nullopt if the file has no seal. Then another program may have rewritten it, and HDF5 reads
-  /// all numbers.
+  /// The slabs; nullopt if the file has no seal. Then another program may have rewritten it, and
+  /// HDF5 reads all numbers.
   std::optional<ResultSlabs> slabs_;
-  mutable std::map<std::string, h5::Handle> datasets_;  ///< that HDF5 has read rows of
+  mutable std::map<std::string, h5::Handle> datasets_;  ///< datasets of which HDF5 has read rows
 };
 
 }  // namespace montecarta::engine

@@ -16,8 +16,8 @@ namespace montecarta::engine {
 /// The place of the runs of one dataset in a file, one run behind the other. It holds all runs or
 /// the first ones.
 struct Slab {
-  std::uint64_t offset = 0;     ///< [byte] of run index 0
-  std::uint64_t run_bytes = 0;  ///< [byte] of one run
+  std::uint64_t offset = 0;     ///< [byte] offset of run index 0
+  std::uint64_t run_bytes = 0;  ///< [byte] size of one run
   std::size_t runs = 0;         ///< number of runs
   bool holds(std::size_t run_index) const { return run_index < runs; }
   std::uint64_t at(std::size_t run_index) const { return offset + run_index * run_bytes; }
@@ -25,10 +25,10 @@ struct Slab {
 
 /// The slabs of one cell.
 struct CellSlabs {
-  std::vector<Slab> columns;      ///< in the order of StoredCell::columns
+  std::vector<Slab> columns;      ///< slabs in the order of StoredCell::columns
   std::size_t usual_columns = 0;  ///< number of columns that every run has
   Slab failure_reason, failure_step, fingerprint, cpu_seconds, status;
-  Slab full_fingerprint;  ///< without runs if full runs have no further columns
+  Slab full_fingerprint;  ///< has no runs if full runs have no further columns
 };
 
 /// The slabs of the true paths.
@@ -43,7 +43,7 @@ struct ResultSlabs {
   Slab wall_seconds;                ///< one value for all runs
   Slab sessions;                    ///< one text for all runs
   std::vector<CellSlabs> cells;
-  std::vector<Slab> sums;         ///< {cell} all groups; empty if the file has no sums
+  std::vector<Slab> sums;         ///< {cell} sums of all groups; empty if the file has none
   std::vector<Slab> sum_seconds;  ///< {cell} processor time of every run in them [s]
 };
 

@@ -33,7 +33,7 @@ struct Label {
   std::string long_name;
 };
 
-/// Dimension scales by the name of the dimension.
+/// {name of the dimension} dimension scales.
 using Scales = std::map<std::string, h5::Handle, std::less<>>;
 
 void put_label(const h5::Handle& dataset, const Label& label) {
@@ -341,7 +341,7 @@ void visit_scenario(Fields& scenario, Description& d) {
   });
 }
 
-/// `between` is called before the last fields.
+/// Calls all fields of the description; `between` is called before the last ones.
 template <class Fields, class Description, class Between>
 void visit(Fields& file, Description& d, const Between& between) {
   file.text("title", d.title);

@@ -26,6 +26,8 @@ namespace montecarta::engine {
 /// if the disk fails.
 class ResultWriter {
  public:
+  // The following three functions are defined in open_result.cpp.
+
   /// Lays out a new file. `existing` also applies to an unfinished OUT.h5.part. An OUT.h5 that is
   /// to be replaced stays unchanged until finish(). `provenance` is stored as attributes of
   /// /provenance.
@@ -79,8 +81,8 @@ class ResultWriter {
   std::vector<std::uint32_t> scan_steps_;
   std::function<std::vector<Eigen::Vector2d>(std::uint64_t)> own_landmarks_;
   std::uint64_t first_run_;
-  std::vector<std::vector<std::atomic<RunStatus>>> status_;  ///< [cell][run index]
-  std::vector<std::atomic<bool>> truth_stored_;              ///< [run index]
+  std::vector<std::vector<std::atomic<RunStatus>>> status_;  ///< {cell}{run index}
+  std::vector<std::atomic<bool>> truth_stored_;              ///< {run index}
 };
 
 }  // namespace montecarta::engine

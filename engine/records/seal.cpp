@@ -23,8 +23,8 @@ static_assert(std::endian::native == std::endian::little, "files are little-endi
 constexpr std::string_view kHdf5 = "\x89HDF\r\n\x1a\n";
 constexpr std::string_view kMagic = "\x89MCSEAL\n";
 constexpr std::uint64_t kVersion = 1;
-constexpr std::size_t kHeadWords = 4;         // magic, version, size of the file, number of ranges
-constexpr std::size_t kTailWords = 2;         // fingerprint of the file, fingerprint of the seal
+constexpr std::size_t kHeadWords = 4;  // words: magic, version, size of the file, number of ranges
+constexpr std::size_t kTailWords = 2;  // words: fingerprint of the file, fingerprint of the seal
 constexpr std::size_t kSuperblockBytes = 52;  // contains the end address in every version
 
 [[noreturn]] void refuse(const std::filesystem::path& path, const std::string& why) {
@@ -54,7 +54,7 @@ std::uint64_t end_of_hdf5(const PosixFile& file) {
     refuse_other(file.path());
   }
   const auto version = value_at<std::uint8_t>(head, 8);
-  const std::size_t widths = version < 2 ? 13 : 9;  // of addresses and lengths
+  const std::size_t widths = version < 2 ? 13 : 9;  // offset of the widths of addresses and lengths
   if (version > 3 || value_at<std::uint8_t>(head, widths) != 8) {
     refuse(file.path(), "its superblock is of an unknown kind");
   }

@@ -24,7 +24,7 @@ void put_seal(const PosixFile& file, const std::vector<ByteRange>& open);
 
 enum class Seal : std::uint8_t {
   holds,
-  absent,  ///< of an older version, or the file was rewritten by another program
+  absent,  ///< the version is older, or another program rewrote the file
 };
 /// Throws StudyError if the file is not HDF5, is cut short, or does not match its seal.
 Seal check_seal(const std::filesystem::path& path);

@@ -41,7 +41,7 @@ std::array<std::uint64_t, kGroupHeadWords> head_words(const SumGroup& group) {
   return {group.first_run, group.runs, group.complete, group.failed, group.layout, group.words};
 }
 
-/// The first run behind the group that begins at `run`.
+/// The first run after the group that begins at `run`.
 std::uint64_t end_of_group(std::uint64_t run, const SummedRuns& runs) {
   return std::min(run + kRunsOfAGroup, runs.last_run);
 }
@@ -122,7 +122,7 @@ void write_group(const fs::path& out, const fs::path& rows, std::span<const NewG
 
 namespace {
 
-/// A result with sums that others are made of.
+/// A result with sums from which others are made.
 struct SumShard : Shard {
   ResultDescription description;
   std::vector<std::vector<SumGroup>> groups;  ///< {cell}

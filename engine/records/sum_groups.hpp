@@ -11,19 +11,19 @@
 #include <string>
 #include <vector>
 
-/// Results that hold sums over groups of runs in place of the rows of each run (record.columns has
-/// sums). The runs of a group are analysed as soon as they are made. The engine stores the sums as
-/// words, whose meaning the analysis knows (analysis/FORMAT.md, "/sums").
+/// Results that hold sums over groups of runs instead of the rows of each run (if record.columns
+/// has sums). The runs of a group are analysed as soon as they are made. The engine stores the sums
+/// as words, whose meaning is defined by the analysis (analysis/FORMAT.md, "/sums").
 namespace montecarta::engine {
 
-/// The sums of one cell over one group of runs, as they lie in a file.
+/// The head of the sums of one cell over one group of runs, as stored in a file.
 struct SumGroup {
-  std::uint64_t first_run = 0;  ///< number in the study
+  std::uint64_t first_run = 0;  ///< number of its first run in the study
   std::uint64_t runs = 0;
-  std::uint64_t complete = 0, failed = 0;  ///< of them
+  std::uint64_t complete = 0, failed = 0;  ///< numbers of complete and failed runs
   std::uint64_t layout = 0;                ///< fingerprint of the meaning of the words
   std::uint64_t words = 0;                 ///< number of the words of the sums
-  std::uint64_t offset = 0;                ///< [byte] of the head in the file
+  std::uint64_t offset = 0;                ///< [byte] offset of the head in the file
 };
 
 /// Words before the sums of a group: the members of SumGroup up to `words`.

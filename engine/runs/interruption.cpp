@@ -32,7 +32,7 @@ Interruption::Interruption(From from) {
   received = 0;
   struct sigaction action {};
   action.sa_handler = note_signal;
-  action.sa_flags = SA_RESTART;  // so that reads and writes are not interrupted
+  action.sa_flags = SA_RESTART;  // reads and writes are not interrupted
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, &before_int_);
   sigaction(SIGTERM, &action, &before_term_);

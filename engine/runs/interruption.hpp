@@ -10,7 +10,7 @@
 
 namespace montecarta::engine {
 
-/// Why a session of a study ended.
+/// The reason why a session of a study ended.
 enum class StopReason : std::uint8_t {
   complete,     ///< no run is missing
   time_budget,  ///< --time-budget is exhausted
@@ -53,7 +53,7 @@ class Interruption {
   Interruption(const Interruption&) = delete;
   Interruption& operator=(const Interruption&) = delete;
 
-  /// SIGINT or SIGTERM; 0 if none was received since construction.
+  /// The signal, SIGINT or SIGTERM; 0 if none was received since construction.
   int signal() const;
 
  private:

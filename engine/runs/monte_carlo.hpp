@@ -26,9 +26,9 @@ std::vector<std::uint64_t> rounds_of(std::uint64_t runs);
 /// The result of a session of a study.
 struct RunOutcome {
   StopReason stopped = StopReason::complete;
-  RunCounts counts = {};        ///< of all cells, including earlier sessions
-  std::uint64_t runs_here = 0;  ///< complete or failed in this session
-  double seconds = 0.0;         ///< wall time of this session
+  RunCounts counts = {};        ///< runs of all cells, including earlier sessions
+  std::uint64_t runs_here = 0;  ///< number of runs that ended in this session
+  double seconds = 0.0;         ///< [s] wall time of this session
 };
 
 /// Exit code of the program: 0 done, 3 done with some failed runs, 85 stopped at a checkpoint (by
@@ -39,13 +39,13 @@ int exit_code(const RunOutcome& outcome, bool under_scheduler);
 struct RunOptions {
   std::filesystem::path output;
   Parallel parallel = Parallel::serial();
-  bool resume = false;                  ///< continue an unfinished file
-  bool force = false;                   ///< replace a finished or unfinished one
-  bool attempt = false;                 ///< make one of several attempts, perhaps at the same time
-  std::optional<double> time_budget{};  ///< [s], then stop at a checkpoint
+  bool resume = false;   ///< whether to continue an unfinished file
+  bool force = false;    ///< whether to replace a finished or unfinished file
+  bool attempt = false;  ///< whether to make one of several attempts, perhaps at once
+  std::optional<double> time_budget{};  ///< [s] time after which to stop at a checkpoint
   ProgressStyle progress = ProgressStyle::automatic;
-  bool quiet = false;      ///< neither progress nor notes on standard error
-  TextPairs provenance{};  ///< how the file was made
+  bool quiet = false;      ///< whether to omit progress and notes on standard error
+  TextPairs provenance{};  ///< facts about build, machine and command
 };
 
 /// Runs the missing runs of the plan and stores them. Ends early on SIGINT, SIGTERM or when the

@@ -83,7 +83,7 @@ std::string with_bar(const std::string& line, const RunCounts& counts, std::size
 }
 
 double plain_interval(double seconds) {
-  return std::max(60.0, 0.02 * seconds);  // a few hundred lines in a night
+  return std::max(60.0, 0.02 * seconds);  // this makes a few hundred lines in a night
 }
 
 Progress::Progress(ProgressStyle style, const RunCounts& at_start, std::FILE* out)

@@ -42,11 +42,11 @@ struct RunCounts {
 /// "12:40 h", "3.4 d".
 std::string duration_text(double seconds);
 
-/// " 45 %  1350/3000 runs, 2 failed, 85.2/s, 19 s left" after `seconds` of this session, before
-/// which `earlier` runs had ended.
+/// A line of progress after `seconds` of this session, before which `earlier` runs had ended: " 45
+/// %  1350/3000 runs, 2 failed, 85.2/s, 19 s left".
 std::string progress_line(const RunCounts& counts, std::uint64_t earlier, double seconds);
-/// `line` behind a bar that is filled in proportion to the runs that ended, with at most `width`
-/// characters. If there is no room for the bar, it is left out.
+/// Puts a bar before `line`, filled in proportion to the runs that ended; at most `width`
+/// characters in all. If there is no room for the bar, it is left out.
 std::string with_bar(const std::string& line, const RunCounts& counts, std::size_t width);
 
 enum class ProgressStyle { automatic, plain, none };
@@ -74,11 +74,11 @@ class Progress {
  private:
   void draw(double seconds);
 
-  std::FILE* out_;  ///< nullptr: nothing is shown
-  bool redraws_;    ///< one line on a terminal
+  std::FILE* out_;  ///< output; nullptr: nothing is shown
+  bool redraws_;    ///< whether one line on a terminal is redrawn
   std::uint64_t earlier_;
   Stopwatch stopwatch_;
-  double last_shown_ = 0.0;  ///< [s] on the stopwatch
+  double last_shown_ = 0.0;  ///< [s] time on the stopwatch
   mutable std::mutex mutex_;
   RunCounts counts_;
 };

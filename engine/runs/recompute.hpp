@@ -16,8 +16,8 @@ namespace montecarta::engine {
 
 /// One run of one cell in a file.
 struct StoredRun {
-  std::size_t cell;       ///< in the order of the file, which is the plan's
-  std::size_t run_index;  ///< within the file
+  std::size_t cell;       ///< index in the file, and in the plan
+  std::size_t run_index;  ///< index within the file
 };
 
 /// Computes stored runs again, each by itself, and compares all bytes under /cells and /truth.
@@ -40,7 +40,7 @@ class Recomputation {
   const StudyPlan& plan_;
   PosixFile file_;
   ResultSlabs slabs_;
-  std::vector<RecordLayout> layouts_, full_layouts_;  ///< one per cell
+  std::vector<RecordLayout> layouts_, full_layouts_;  ///< {cell}
 };
 
 }  // namespace montecarta::engine

@@ -28,7 +28,7 @@ namespace montecarta::engine {
 class CpuClock {
  public:
   CpuClock() : begin_(now()) {}
-  /// [s]
+  /// [s] Processor time since construction.
   double seconds() const { return now() - begin_; }
 
  private:
@@ -42,10 +42,10 @@ class CpuClock {
 
 /// Everything besides the filter on which a run depends, and the resources that it may use.
 struct RunConditions {
-  std::uint64_t seed;  ///< of the study
+  std::uint64_t seed;  ///< seed of the study
   std::uint64_t run;
   const Itinerary& itinerary;
-  const Drive& drive;  ///< of this run
+  const Drive& drive;  ///< drive of this run
   const SpareThreads& spare_threads;
   const StopRequest& stop;
 };
@@ -61,7 +61,7 @@ enum class RunEnd { recorded, dropped };
 
 /// One run of one cell, the unit of work.
 struct Task {
-  std::size_t run_index;  ///< within the file
+  std::size_t run_index;  ///< index within the file
   std::size_t cell;
 };
 
@@ -93,7 +93,7 @@ class TaskList {
 /// Data that all workers of a session share.
 struct Session {
   const StudyPlan& plan;
-  std::span<const RecordLayout> layouts, full_layouts;  ///< one per cell
+  std::span<const RecordLayout> layouts, full_layouts;  ///< {cell}
   ResultWriter& writer;
   TaskList& tasks;
   SpareThreads& spare_threads;
@@ -127,7 +127,7 @@ class Worker {
   const Session& session_;
   Drive drive_;
   std::optional<std::size_t> drive_run_index_;  ///< run index of drive_; nullopt if it is invalid
-  std::vector<std::byte> memory_;               ///< of the record, which all cells share
+  std::vector<std::byte> memory_;               ///< memory of the record, which all cells share
   std::vector<std::unique_ptr<CellState>> cell_states_;
 };
 

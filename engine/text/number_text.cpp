@@ -10,7 +10,7 @@
 namespace montecarta::engine {
 namespace {
 
-/// A number that is rounded to zero has no sign.
+/// Text of a number; one that is rounded to zero has no sign.
 std::string printed(const char* format, int precision, double value) {
   std::array<char, 512> buffer{};
   std::snprintf(buffer.data(), buffer.size(), format, precision, value);
@@ -19,7 +19,7 @@ std::string printed(const char* format, int precision, double value) {
   return text;
 }
 
-/// Place of the first significant digit: 0 for 3.58, -2 for 0.012.
+/// Power of ten of the first significant digit: 0 for 3.58, -2 for 0.012.
 int magnitude(double value) {
   return value == 0.0 ? 0 : static_cast<int>(std::floor(std::log10(std::abs(value))));
 }
@@ -60,7 +60,8 @@ std::string fixed_seconds(double time) { return printed("%.*f", 1, time) + " s";
 std::string exact_text(double value) {
   if (std::isnan(value)) return "nan";
   std::array<char, 64> text{};
-  const bool is_count = std::abs(value) < 1e15 && value == std::trunc(value);  // 100000, not 1e+05
+  // A whole number is written without exponent: 100000, not 1e+05.
+  const bool is_count = std::abs(value) < 1e15 && value == std::trunc(value);
   const auto end = is_count
                        ? std::to_chars(text.begin(), text.end(), value, std::chars_format::fixed)
                        : std::to_chars(text.begin(), text.end(), value);

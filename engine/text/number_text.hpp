@@ -7,29 +7,30 @@
 
 namespace montecarta::engine {
 
-/// A number for reading: `digits` significant digits, "-" for NaN. No exponent up to a million.
+/// Text of a number for readers: `digits` significant digits, "-" for NaN. It has no exponent up to
+/// a million.
 std::string readable(double value, int digits = 3);
 
-/// A number for reading like readable(), but in powers of ten from ten thousand on, "2.73e5".
+/// Text of a number like readable(), but in powers of ten from ten thousand on, "2.73e5".
 std::string compact(double value);
 
-/// A mean with its standard error, "3.58 +- 0.10", both to the second significant digit of the
-/// error. "-" for NaN; without error if there is one run.
+/// Text of a mean with its standard error, "3.58 +- 0.10", both to the second significant digit of
+/// the error. "-" for NaN; without error if there is one run.
 std::string with_error(double mean, double standard_error);
 
-/// A mean with its error like with_error(), but with a fixed number of decimals.
+/// Text of a mean like with_error(), but with a fixed number of decimals.
 std::string with_error_to(int decimals, double mean, double standard_error);
 
-/// A time to a tenth of a second, "4.2 s".
+/// Text of a time [s] to a tenth of a second, "4.2 s".
 std::string fixed_seconds(double time);
 
 /// The shortest text that reads back as the same number; "nan", "inf".
 std::string exact_text(double value);
 
-/// A share as "94.6 %".
+/// Text of a share, "94.6 %".
 std::string percent(double share);
 
-/// A level as text, for instance "95 %" or "99.9 %".
+/// Text of a level, for instance "95 %" or "99.9 %".
 std::string level_text(double level);
 
 }  // namespace montecarta::engine

@@ -8,7 +8,7 @@
 namespace montecarta::engine {
 namespace {
 
-/// Number of bytes of the UTF-8 character that begins with `first`; 0 if none does.
+/// Number of bytes of the UTF-8 character that begins with `first`; 0 if none begins with it.
 std::size_t length_by(unsigned char first) {
   if (first < 0x80) return 1;
   if (first < 0xc2 || first > 0xf4) return 0;

@@ -15,21 +15,22 @@
 
 namespace montecarta::engine {
 
-/// Results that threads make as they come, and that are taken in the order of their index.
+/// Results that threads make in any order, and that are taken in the order of their index.
 template <class Result, class Take>
 class TakenInOrder {
  public:
-  /// At most `most` results are begun and not taken.
+  /// At most `most` results are begun and not yet taken.
   TakenInOrder(std::size_t count, std::size_t most, const Take& take)
       : count_(count), most_(most), take_(&take) {}
 
-  /// The index of the next result to be made, once there is room; nullopt where there is none.
+  /// Waits for room and returns the index of the next result to make; nullopt if there is none.
   std::optional<std::size_t> begin_next() {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return failure_ || begun_ < taken_ + most_; });
     return failure_ || begun_ == count_ ? std::nullopt : std::optional(begun_++);
   }
-  /// Takes result `i` and those that waited for it alone. It is an exception where it is nullopt.
+  /// Takes result `i` and those that waited only for it. If `result` is nullopt, its making threw
+  /// `exception`.
   void finish(std::size_t i, std::optional<Result> result, std::exception_ptr exception) {
     const std::lock_guard lock(mutex_);
     try {
@@ -44,7 +45,7 @@ class TakenInOrder {
     }
     changed_.notify_all();
   }
-  /// Once all threads are done: rethrows the exception of the least index.
+  /// Rethrows the exception of the least index. All threads must have ended.
   void rethrow() const {
     if (failure_) std::rethrow_exception(failure_);
   }
@@ -59,7 +60,7 @@ class TakenInOrder {
   const Take* take_;
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::map<std::size_t, Made> waiting_;  ///< for those before them
+  std::map<std::size_t, Made> waiting_;  ///< results that wait for earlier ones
   std::size_t begun_ = 0, taken_ = 0;
   std::exception_ptr failure_;
 };

@@ -18,8 +18,8 @@
 namespace montecarta::engine {
 namespace {
 
-/// The bodies of one loop. Of their exceptions it keeps that of the least index: all bodies before
-/// it are called on any number of threads, and those behind it need not be.
+/// The bodies of one loop. It keeps the exception of the least index: all bodies before that are
+/// called on any number of threads; those after it need not be called.
 class Bodies {
  public:
   using Call = void (*)(const void*, std::size_t);
@@ -37,8 +37,8 @@ class Bodies {
       exception_ = std::current_exception();
     }
   }
-  /// To be called when all calls have returned. The lock is for the thread sanitizer, which does
-  /// not see that TBB and OpenMP join their threads.
+  /// Rethrows the exception. Must be called after all calls have returned. The lock is for the
+  /// thread sanitizer, which does not see that TBB and OpenMP join their threads.
   void rethrow() {
     const std::lock_guard lock(mutex_);
     if (exception_) std::rethrow_exception(exception_);

@@ -114,7 +114,7 @@ class SpareThreads {
   SpareThreads(const Parallel& parallel, std::size_t workers)
       : parallel_(&parallel), at_work_(workers) {}
 
-  /// The threads for the next loop over `particles`. They may change with the step, results do not.
+  /// The threads for the next loop over `particles`. They may change with the step; results do not.
   const Parallel& lend(std::size_t particles) const {
     const auto threads = static_cast<std::size_t>(parallel_->threads());
     const bool spare = at_work_.load(std::memory_order_relaxed) < threads;

@@ -12,8 +12,8 @@ namespace montecarta::engine {
 
 /// The limits that the operating system sets for this process.
 struct CpuLimits {
-  int affinity = 1;  ///< processors the process may run on
-  /// Processors, by the tightest control group; infinity if none limits it.
+  int affinity = 1;  ///< number of processors on which the process may run
+  /// Number of processors by the tightest control group; infinity if none limits it.
   double quota = std::numeric_limits<double>::infinity();
 };
 

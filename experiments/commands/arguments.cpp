@@ -19,7 +19,7 @@
 namespace montecarta::experiments {
 namespace {
 
-/// "-o, --output OUT.h5  result file"
+/// The option in a line of the help, e.g. "-o, --output OUT.h5  result file".
 OptionSpec option_in(const std::string& line) {
   const std::size_t gap = std::min(line.find("  "), line.size());
   OptionSpec option;
@@ -40,7 +40,7 @@ OptionSpec option_in(const std::string& line) {
   return option;
 }
 
-/// "FILE.h5", "FILE.h5..." or "[NAME]"
+/// The operand in a word of the usage: "FILE.h5", "FILE.h5..." or "[NAME]".
 OperandSpec operand_in(std::string word) {
   OperandSpec operand;
   if (word.starts_with('[')) {
@@ -55,7 +55,7 @@ OperandSpec operand_in(std::string word) {
   return operand;
 }
 
-/// "replay FILE.h5 -o ONE.h5"; its options are read later.
+/// The command in a usage, e.g. "replay FILE.h5 -o ONE.h5"; its options are read later.
 CommandSpec command_in(const std::string& usage) {
   const std::vector<std::string> words = split(usage, ' ');
   CommandSpec command;
@@ -163,7 +163,7 @@ po::parsed_options parsed(const CommandSpec& spec, const Texts& words,
   }
 }
 
-/// "-o OUT.h5"
+/// Text of an option with its value: "-o OUT.h5".
 std::string spelling_of(const OptionSpec& option) {
   return (option.letter.empty() ? "--" + option.name : "-" + option.letter) + " " + option.value;
 }

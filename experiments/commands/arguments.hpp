@@ -18,13 +18,13 @@ namespace montecarta::experiments {
 
 /// One option of a command.
 struct OptionSpec {
-  std::string name;    ///< without dashes
+  std::string name;    ///< name without dashes
   std::string letter;  ///< one letter, or "" if there is none
   std::string value;   ///< name of the value that follows it; empty: a flag
   std::string meaning;
   bool is_required = false;
   bool repeatable = false;
-  bool is_list = false;  ///< takes one or more values, up to the next option
+  bool is_list = false;  ///< whether it takes one or more values, up to the next option
 };
 
 /// A positional argument of a command.
@@ -37,9 +37,9 @@ struct OperandSpec {
 /// The usage of a command. Both the parser and the help text are made from it.
 struct CommandSpec {
   std::string name;
-  std::string usage;                  ///< with operands and required options
-  std::string summary;                ///< one line
-  std::vector<OperandSpec> operands;  ///< only the last one may repeat
+  std::string usage;                  ///< command line with operands and required options
+  std::string summary;                ///< summary in one line
+  std::vector<OperandSpec> operands;  ///< operands, of which only the last one may repeat
   std::vector<OptionSpec> options;
   std::string details;  ///< text at the end of --help, e.g. examples
 };

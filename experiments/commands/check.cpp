@@ -173,7 +173,7 @@ std::string memory_text(double bytes) {
 /// [byte] Size of the result file.
 double size_of_file(const StudyPlan& plan) {
   if (!plan.columns.sums) return describe(plan, {}).bytes();
-  StudyPlan first_runs = plan;  // the only ones with rows
+  StudyPlan first_runs = plan;  // the only runs with rows
   const std::uint64_t kept = std::max(kRunsBesideSums, plan.columns.full_runs);
   first_runs.last_run = std::min(plan.first_run + kept, plan.last_run);
   const double sums = bytes_of_sums(plan.runs_here(), plan.drives->itinerary().scans());
@@ -183,8 +183,8 @@ double size_of_file(const StudyPlan& plan) {
 /// Estimated cost of a study, with a table row for each cell below the headings.
 struct Costs {
   double cpu_seconds = 0.0;
-  double disk = 0.0;        ///< [byte]
-  double per_thread = 0.0;  ///< [byte]
+  double disk = 0.0;        ///< [byte] size of the result file
+  double per_thread = 0.0;  ///< [byte] memory of one thread
   std::vector<TableRow> rows{{"run time", "run size", "all runs"}};
 };
 
@@ -222,7 +222,7 @@ Costs costs_of(const StudyPlan& plan) {
   return costs;
 }
 
-/// "EKF-SLAM, FastSLAM II (3 cells)", in the order of the study.
+/// Text of the filters, in the order of the study: "EKF-SLAM, FastSLAM II (3 cells)".
 std::string filters_of(const Study& study) {
   std::vector<std::string> names;
   for (const CellSpec& cell : study.cells) {

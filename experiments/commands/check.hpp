@@ -9,9 +9,9 @@ namespace montecarta::experiments {
 
 /// Cost of one run of a cell on one thread.
 struct Trial {
-  double seconds = 0.0;  ///< of the steps, without the start of an external program
-  double bytes = 0.0;  ///< of memory that the filter holds at the end of the run; infinity if more
-                       ///< than is free
+  double seconds = 0.0;  ///< [s] time of the steps, without the start of an external program
+  /// [byte] memory that the filter holds at the end of the run; infinity if more than is free.
+  double bytes = 0.0;
 };
 
 /// Runs the first part of `drive`, for a quarter of a second at most, and extrapolates to all of

@@ -48,7 +48,8 @@ const char* name_of(GateAnswer answer) {
                                               : "undecided";
 }
 
-/// Why the gate is closed although the errors alone would open it; empty if it is not.
+/// The reason why the gate is closed although the errors alone would open it; empty if it is not
+/// closed.
 std::string too_many(const Verdict& verdict, const Allowance& allowed) {
   const auto words = [](const std::string& what, std::uint64_t most) {
     return " More " + what + " than are allowed (" + std::to_string(most) + ").";

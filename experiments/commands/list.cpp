@@ -21,16 +21,16 @@ namespace {
 /// One entry of a list, with all that is printed if a user names it.
 struct ListEntry {
   std::string name;
-  std::string summary;    ///< stands beside the name in the list
+  std::string summary;    ///< text beside the name in the list
   TextPairs facts = {};   ///< lines below the summary of one entry
   std::string more = {};  ///< text above the facts
   /// Tables below the facts, with their headings.
   std::vector<std::pair<std::string, TextPairs>> tables = {};
-  std::string heading = {};     ///< stands in the list above entries of the same heading
-  std::string short_name = {};  ///< in the list; empty: the name
+  std::string heading = {};     ///< heading in the list, above all entries that have it
+  std::string short_name = {};  ///< name in the list; empty if it is `name`
 };
 
-/// The default, and the one for measured controls if it differs.
+/// Text of the default, and of the one for measured controls if it differs.
 std::string fallback_text(const Parameter& option) {
   std::string text = option.fallback.value_or("none, it must be given");
   if (option.fallback_if_measured)
@@ -59,7 +59,7 @@ std::vector<ListEntry> filters() {
   return entries;
 }
 
-/// The default, and the defaults for kinds of scenario that have another one.
+/// Text of the default, and of the defaults for kinds of scenario that have another one.
 std::string fallback_text(const Setting& setting) {
   const auto in_words = [](const std::string& value) {
     return value == kRequired       ? "none, it must be given"
@@ -196,7 +196,7 @@ struct Listed {
   std::string name;
   std::vector<ListEntry> (*entries)();
   std::string example;      ///< an entry about which there is more to read
-  std::string remark = {};  ///< stands above the list
+  std::string remark = {};  ///< text above the list
 };
 
 /// Prints all entries below their headings.

@@ -27,7 +27,7 @@ std::string all_columns(const Study& study) {
   for (const Setting& setting : study_settings()) {
     if (setting.section == "record" && setting.key == "columns") columns = setting.choices;
   }
-  std::erase(columns, "sums");  // in place of the rows that are to be drawn
+  std::erase(columns, "sums");  // sums would replace the rows that are to be drawn
   if (identities_of(study) == 0) std::erase(columns, "association");
   if (!objection_to_joint(study).empty()) std::erase(columns, "joint");
   if (!objection_to_observability(study).empty()) std::erase(columns, "observability");

@@ -20,7 +20,7 @@ struct StudyStatus {
   std::vector<std::vector<RunStatus>> runs;  ///< {cell}{run of the study}
 };
 
-/// It does not matter here which runs of a group failed.
+/// Adds the statuses of all groups. It does not matter here which runs of a group failed.
 void add_groups(const std::vector<SumGroup>& groups, std::vector<RunStatus>& status) {
   for (const SumGroup& group : groups) {
     const auto first = status.begin() + static_cast<std::ptrdiff_t>(group.first_run);

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kShortestSitting = 0.001;  // [s]
+constexpr double kShortestSitting = 0.001;  // [s] shortest time budget
 
 /// The plan of one group of a study.
 StudyPlan group_of(const StudyPlan& plan, std::uint64_t first_run) {
@@ -35,7 +35,7 @@ fs::path file_in(const fs::path& folder, const char* kind, std::uint64_t first_r
 ResultDescription description_of_group(const fs::path& path) {
   const ResultFile file(path);
   for (const StoredCell& cell : file.cells()) {
-    if (file.has_sums()) file.sum_groups(cell);  // refuses a file without its seal
+    if (file.has_sums()) file.sum_groups(cell);  // throws if the file lacks its seal
     for (std::size_t i = 0; i < file.runs().size(); ++i) file.expect_whole(cell, i);
   }
   return file.description();
@@ -95,7 +95,7 @@ void show_progress(const StudyPlan& plan, std::uint64_t done, double seconds,
                static_cast<unsigned long long>(plan.runs_here()), seconds);
 }
 
-/// A file that says that the work replaces a result, which a later session must know.
+/// The file whose existence says that the work replaces a result, which a later session must know.
 fs::path replaces_in(const fs::path& folder) { return folder / "replaces"; }
 fs::path lock_in(const fs::path& folder) { return folder / "lock"; }
 

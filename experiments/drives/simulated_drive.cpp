@@ -93,7 +93,7 @@ const Control& WaypointPilot::steer(const Pose& pose) {
 
 namespace {
 
-/// [m]
+/// [m] Length of one step.
 double step_length(const Scenario& scenario) { return scenario.speed / scenario.control_rate; }
 
 /// Distance [m] within which a vehicle must reach a way-point; beyond it the way-point counts as

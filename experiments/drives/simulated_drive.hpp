@@ -29,14 +29,14 @@ enum class NoiseMode {
 
 /// The steering of a simulated vehicle if noise acts on the truth (EQUATIONS 1).
 enum class Pilot {
-  closed_loop,  ///< by its true pose, so that controls depend on the truth
-  open_loop     ///< by the controls of the noise-free drive
+  closed_loop,  ///< steering by the true pose, so that controls depend on the truth
+  open_loop     ///< steering by the controls of the noise-free drive
 };
 
 /// Positions of the landmarks.
 enum class MapPlacement {
-  fixed,  ///< as in the world, in every run
-  random  ///< displaced in every run, uniformly within Scenario::map_shift
+  fixed,  ///< positions of the world in every run
+  random  ///< positions displaced in every run, uniformly within Scenario::map_shift
 };
 
 /// The drive of a simulated vehicle through a world, and its sensor (study file: [scenario]).
@@ -47,22 +47,23 @@ struct Scenario {
   double map_shift = 10.0;           ///< [m] largest displacement of a landmark of a random map
   std::uint32_t loops = 1;           ///< number of times round the way-points
   std::uint32_t steps_per_scan = 8;  ///< control_rate / scan_rate
-  double control_rate = 40.0;        ///< [Hz]
+  double control_rate = 40.0;        ///< [Hz] control steps per second
   Vehicle vehicle = {};
-  double speed = 3.0;                                       ///< [m/s]
-  ControlNoise control{.sigma = {0.3, 3.0 * kPi / 180.0}};  ///< e.g. [m/s], [rad]
-  double sigma_range = 0.1;                                 ///< [m]
-  double sigma_bearing = 1.0 * kPi / 180.0;                 ///< [rad]
-  double max_range = 30.0;                                  ///< [m]
+  double speed = 3.0;                                       ///< [m/s] speed of the vehicle
+  ControlNoise control{.sigma = {0.3, 3.0 * kPi / 180.0}};  ///< noise, e.g. [m/s], [rad]
+  double sigma_range = 0.1;                                 ///< [m] standard deviation
+  double sigma_bearing = 1.0 * kPi / 180.0;                 ///< [rad] standard deviation
+  double max_range = 30.0;                                  ///< [m] largest measured range
   double field_of_view = kPi;     ///< [rad] full angle, centred on the axis of the sensor
   double waypoint_radius = 1.0;   ///< [m] distance within which a way-point is reached
   double clutter_rate = 0.0;      ///< mean number of false alarms per scan
   double miss_probability = 0.0;  ///< probability that a visible landmark is not detected
-  Pose start{};                   ///< before the first step
+  Pose start{};                   ///< pose before the first step
   Sensor sensor = {};             ///< its components determine which deviations are used
-  double sigma_forward = 0.1;     ///< [m] of a relative position, along the axis of the sensor
-  double sigma_left = 0.1;        ///< [m] of a relative position, across that axis
-  double min_range = 0.0;         ///< [m]
+  /// [m] standard deviation of a relative position along the sensor's axis.
+  double sigma_forward = 0.1;
+  double sigma_left = 0.1;  ///< [m] standard deviation of a relative position across that axis
+  double min_range = 0.0;   ///< [m] least measured range
 };
 
 /// A landmark in view and its detection by a sensor without noise.
@@ -137,7 +138,7 @@ class RandomMap {
   RandomMap(std::vector<Eigen::Vector2d> places, double shift, std::uint64_t seed)
       : places_(std::move(places)), shift_(shift), seed_(seed) {}
 
-  /// Positions by identity [m].
+  /// [m] Positions of a run by identity.
   std::vector<Eigen::Vector2d> operator()(std::uint64_t run) const;
 
  private:
@@ -175,7 +176,7 @@ class SimulatedDrive final : public DriveSource {
   void scan(const StreamIdentity& here, const Pose& pose, Landmarks landmarks, Drive& drive) const;
   void end_scan(const StreamIdentity& here, Drive& drive) const;
   std::size_t expected_detections() const;
-  /// `control` with the noise of this run and step.
+  /// Returns `control` with the noise of this run and step.
   Control noisy(const Control& control, std::uint64_t run, std::size_t step) const;
   StreamIdentity place(std::uint64_t run, std::size_t step) const;
 

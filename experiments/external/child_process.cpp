@@ -29,7 +29,7 @@ constexpr std::size_t kMostGroups = 4096;
 /// no function that may wait for a lock. It closes the descriptors that it inherited, which belong
 /// to the parent and its programs.
 [[noreturn]] void guard_until_end_of(int line) {
-  ::setsid();  // so that Ctrl-C in a terminal does not reach it
+  ::setsid();  // keeps Ctrl-C in a terminal from reaching it
   ::dup2(line, STDIN_FILENO);
   ::syscall(SYS_close_range, 1U, ~0U, 0U);
   const pid_t ready = 0;
@@ -182,12 +182,12 @@ bool may_be_run(const fs::path& file) {
   return fs::is_regular_file(file, failure) && ::access(file.c_str(), X_OK) == 0;
 }
 
-constexpr int kFarewell = 1000;  // [ms] that a program has to end after its input is closed
-constexpr int kLookUp = 50;      // [ms] between two checks of the stop flag
+constexpr int kFarewell = 1000;  // [ms] time that a program has to end after its input is closed
+constexpr int kLookUp = 50;      // [ms] time between two checks of the stop flag
 /// Time for which a worker polls for an answer before it sleeps. Waking it on an idle core takes
 /// longer than a scan of a fast filter.
 constexpr std::chrono::microseconds kAwake{50};
-constexpr std::size_t kErrorOutput = 4096;  // [byte] kept of the standard error
+constexpr std::size_t kErrorOutput = 4096;  // [byte] length that is kept of the standard error
 
 bool is_for_later(int error) { return error == EAGAIN || error == EWOULDBLOCK || error == EINTR; }
 

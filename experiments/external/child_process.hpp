@@ -49,7 +49,7 @@ std::filesystem::path find_program(const std::string& program);
 
 /// Limits of the wait for an answer.
 struct TimeLimit {
-  double seconds = 30.0;           ///< of wall time
+  double seconds = 30.0;           ///< [s] limit of wall time
   const StopFlag* stop = nullptr;  ///< ends the wait early
 };
 
@@ -110,7 +110,7 @@ class ChildProcess {
   std::size_t sent_ = 0;
   std::string incoming_;
   std::size_t answered_ = 0;  ///< length of the answer in incoming_ that was returned last
-  bool at_end_ = false;       ///< the program has closed its standard output or input
+  bool at_end_ = false;       ///< whether the program has closed its standard output or input
   bool failed_ = false;
   std::string error_output_;  ///< end of the program's standard error
 };

@@ -67,7 +67,7 @@ void ExternalFilter::begin(const StepContext& context) {
   is_begun_ = true;
   stop_ = context.stop();
   StreamIdentity identity = context.identity(Draw::external_filter, 0);
-  identity.step = 0;  // so that the seed does not depend on the step of the first message
+  identity.step = 0;  // the seed must not depend on the step of the first message
   const auto seed = static_cast<std::uint32_t>(RngStream(identity).bits() >> 32U);
   const RunStart start{context.run(), seed, start_};
   if (!command_.keeps_process) session_->process.reset();

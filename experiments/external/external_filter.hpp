@@ -20,7 +20,8 @@ namespace montecarta::experiments {
 struct ExternalCommand {
   std::vector<std::string> words;  ///< the program and its arguments
   double answer_limit = 30.0;      ///< [s] time limit of one answer
-  bool keeps_process = true;       ///< one process for all runs; otherwise a new one for each run
+  /// Whether one process serves all runs; otherwise each run has a new one.
+  bool keeps_process = true;
 
   /// Results of the attempts to start the program, over all runs of its cell.
   struct Starts {
@@ -56,9 +57,9 @@ class ExternalFilter final : public SlamFilter {
   /// so it may be made by a const function.
   struct ProgramSession {
     std::unique_ptr<ChildProcess> process;
-    std::uint64_t next_id = 0;         ///< of the next message in this run
-    std::vector<ControlRow> controls;  ///< controls that were not yet sent to the program
-    PoseMoments pose;                  ///< its last answer
+    std::uint64_t next_id = 0;         ///< number of the next message in this run
+    std::vector<ControlRow> controls;  ///< controls that are not yet sent to the program
+    PoseMoments pose;                  ///< last answer
   };
 
   void begin(const StepContext& context);

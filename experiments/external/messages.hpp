@@ -23,7 +23,7 @@ using ControlRow = std::vector<double>;
 /// The start of a run.
 struct RunStart {
   std::uint64_t run;
-  std::uint32_t seed;  ///< for the program's random generator; a pure function of study and run
+  std::uint32_t seed;  ///< seed of the program's generator; a pure function of study and run
   Pose pose;
 };
 

@@ -124,7 +124,7 @@ void CsvRows::read_header(std::span<const std::string> headers) {
   if (!row) {
     throw StudyError(path_ + ": empty (the first row names the columns): begin with " + remedy);
   }
-  constexpr std::size_t kLongestHeader = 200;  // of those that are known
+  constexpr std::size_t kLongestHeader = 200;  // no known header is longer
   const std::size_t length = headers.empty() ? row->size() : kLongestHeader;
   columns_ = split(row->substr(0, length), ',');
   if (headers.empty()) return;

@@ -55,7 +55,7 @@ class CsvRows {
   std::string_view field(std::size_t i) const { return fields_[i]; }
   /// Field i as a finite number; `noun` names the quantity in errors.
   double number(std::size_t i, const char* noun) const;
-  /// How the time of a row compares with that of the row before.
+  /// The required order of a row's time and that of the row before.
   enum class Order { later, not_earlier };
   /// Field 0 as a time [s]. Throws StudyError if it is not in order.
   double time(Order order = Order::later);
@@ -64,7 +64,7 @@ class CsvRows {
   /// Throws StudyError with the place of the current row and `fault`, worded "problem (why):
   /// remedy".
   [[noreturn]] void refuse(const std::string& fault) const;
-  /// To be called at the end. Throws StudyError if the file has no rows behind the header.
+  /// Checks the file at its end: throws StudyError if it has no rows after the header.
   void require_some() const;
 
  private:

@@ -44,7 +44,7 @@ Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
   return Eigen::Matrix3d{{0.0, -v.z(), v.y()}, {v.z(), 0.0, -v.x()}, {-v.y(), v.x(), 0.0}};
 }
 
-/// Axis times angle of a rotation, with an angle of at most pi.
+/// The axis of a rotation times its angle, which is at most pi.
 Eigen::Vector3d rotation_vector(const Eigen::Quaterniond& rotation) {
   const double sign = rotation.w() < 0.0 ? -1.0 : 1.0;
   const double sine = rotation.vec().norm();

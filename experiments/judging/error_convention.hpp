@@ -14,7 +14,7 @@ namespace montecarta::experiments {
 /// kErrorConventions.
 enum class ErrorConvention { world, body, right_invariant };
 
-/// "world", "body", "right-invariant".
+/// Name of a convention: "world", "body" or "right-invariant".
 std::string name_of(ErrorConvention convention);
 /// Name of the column with the NEES under a convention: "nees_world", ...
 std::string nees_column(ErrorConvention convention);

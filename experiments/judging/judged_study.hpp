@@ -19,12 +19,12 @@ namespace montecarta::experiments {
 /// The settings by which the estimates of another program become a result file.
 struct JudgingOptions {
   std::filesystem::path output;
-  /// nullopt if the user gave none, which is allowed for a state that has only one.
+  /// The convention; nullopt if the user gave none, which is allowed for a state that has only one.
   std::optional<ErrorConvention> convention = {};
   TimeMatch match;
   Existing existing = Existing::refuse;
   TextPairs provenance;
-  std::optional<double> within;  ///< margin of consistency; not stored if not given
+  std::optional<double> within;  ///< margin of consistent ratios; not stored if not given
 };
 
 /// Reads estimates and truths run by run, and writes their errors as a result file that can be

@@ -11,15 +11,15 @@ namespace montecarta::experiments {
 
 /// The files of one estimator.
 struct EstimatorFiles {
-  std::string cell;                           ///< label
-  std::vector<std::filesystem::path> of_run;  ///< one file for each run of JudgedFiles
+  std::string cell;                           ///< label of the cell
+  std::vector<std::filesystem::path> of_run;  ///< {JudgedFiles::runs} files
 };
 
 /// Estimates and truths, matched by run.
 struct JudgedFiles {
-  std::vector<std::uint64_t> runs;           ///< consecutive, increasing
-  std::vector<std::filesystem::path> truth;  ///< {run}
-  std::vector<EstimatorFiles> cells;         ///< ordered by label
+  std::vector<std::uint64_t> runs;           ///< numbers of the runs, consecutive and increasing
+  std::vector<std::filesystem::path> truth;  ///< {run} files of the truth
+  std::vector<EstimatorFiles> cells;         ///< files of the cells, ordered by label
 };
 
 /// Pairs estimates with truths by the numbers in their names (montecarta judge --help). `truths`

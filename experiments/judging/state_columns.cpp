@@ -32,9 +32,9 @@ using Names = std::vector<std::string>;
 /// Indices of the fields in a row of a file of estimates.
 struct EstimateFields {
   StateShape shape;
-  std::vector<std::size_t> state;           ///< {width}
-  std::vector<std::size_t> covariance;      ///< {d, d}; from a triangle, elements occur twice
-  std::optional<std::size_t> nis, nis_dof;  ///< both or neither
+  std::vector<std::size_t> state;       ///< {width} fields of the state
+  std::vector<std::size_t> covariance;  ///< {d, d} fields; from a triangle, elements occur twice
+  std::optional<std::size_t> nis, nis_dof;  ///< both are present or neither
 };
 
 const std::string kTimeColumn = "time_s", kCovariancePrefix = "cov_";

@@ -16,18 +16,18 @@ namespace montecarta::experiments {
 
 /// The kind of state that an estimator estimates.
 enum class StateKind {
-  pose,           ///< in the plane: x_m, y_m, heading_rad
+  pose,           ///< pose in the plane: x_m, y_m, heading_rad
   pose_in_space,  ///< x_m, y_m, z_m and the quaternion qx, qy, qz, qw; its error has six components
   vector          ///< any other state, in R^n
 };
-/// "pose", "pose in space" or "vector", as stored in a result file.
+/// Name of a kind in a result file: "pose", "pose in space" or "vector".
 std::string name_of(StateKind kind);
 
 /// The state described by the header of a file of estimates.
 struct StateShape {
   StateKind kind = StateKind::vector;
-  std::vector<std::string> columns;     ///< {width} of the state, in the order of StateRows
-  std::vector<std::string> components;  ///< {d} of the error, without units: "x", "rx"
+  std::vector<std::string> columns;     ///< {width} names of the state, in the order of StateRows
+  std::vector<std::string> components;  ///< {d} names of the error, without units: "x", "rx"
   std::vector<std::string> units;       ///< {d} "m", "rad", ...; "1" if the header has no unit
 
   std::size_t width() const { return columns.size(); }
@@ -43,8 +43,8 @@ struct StateRows {
   std::vector<Eigen::MatrixXd> covariance;  ///< {row}{d, d} as in the file; empty for a truth
   std::vector<double> nis;                  ///< {row} empty if the file has none
   std::vector<std::uint32_t> nis_dof;       ///< {row} empty if the file has none
-  std::uint64_t unwrapped_innovations = 0;  ///< with an angle beyond pi
-  std::string first_unwrapped = {};         ///< of them, with file and line
+  std::uint64_t unwrapped_innovations = 0;  ///< number of innovations with an angle beyond pi
+  std::string first_unwrapped = {};         ///< file and line of the first of them
 };
 
 /// Reads estimates (mean and covariance over time) from CSV. Throws StudyError with file, line and
@@ -59,8 +59,8 @@ StateRows read_truth(const std::filesystem::path& path, const StateShape& shape)
 
 /// The method that finds the truth at the time of an estimate.
 struct TimeMatch {
-  double tolerance = 1e-6;   ///< [s] within which two times are the same
-  bool interpolate = false;  ///< between two rows: linearly, with angles the shorter way round
+  double tolerance = 1e-6;   ///< [s] largest difference of times that are the same
+  bool interpolate = false;  ///< whether to interpolate linearly, with angles the shorter way round
 };
 
 /// The state of `truth` at `time`. Throws StudyError if there is none; the error names the files

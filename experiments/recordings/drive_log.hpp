@@ -21,7 +21,7 @@ struct Odometry {
 /// All detections at one instant.
 struct LoggedScan {
   double time = 0.0;                  ///< [s]
-  std::vector<Detection> detections;  ///< in the sensor's order; may be empty
+  std::vector<Detection> detections;  ///< detections in the sensor's order; may be empty
 };
 
 /// A recorded drive as it was measured, independent of its files. All times of a log have the same
@@ -31,10 +31,10 @@ struct DriveLog {
   double start_time = 0.0;
   Pose start;
   std::span<const Quantity> controls = controls_of(Vehicle());     ///< components of the controls
-  std::vector<Odometry> odometry;                                  ///< in increasing time
+  std::vector<Odometry> odometry;                                  ///< controls in increasing time
   std::span<const Quantity> components = components_of(Sensor());  ///< components of the detections
-  std::vector<LoggedScan> scans;                                   ///< in increasing time
-  std::vector<ReferencePath> references;   ///< at least one; the first is the leading one
+  std::vector<LoggedScan> scans;                                   ///< scans in increasing time
+  std::vector<ReferencePath> references;   ///< one or more; the first is the leading one
   std::vector<Eigen::Vector2d> landmarks;  ///< [m] surveyed positions; empty if unknown
 };
 

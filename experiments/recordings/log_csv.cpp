@@ -41,7 +41,7 @@ const std::array<std::string, 6> kReferenceHeaders = {
     "cov_x_heading_m_rad,cov_y_heading_m_rad,var_heading_rad2"};
 constexpr std::size_t kWithSigmas = 2, kWithCovariance = 4;
 
-/// The time, then these controls or components of a detection.
+/// A header of the time, then of these controls or components of a detection.
 std::string header_of(std::span<const Quantity> quantities) {
   std::string header = "time_s";
   for (const Quantity quantity : quantities)
@@ -83,7 +83,7 @@ double heading_in(const CsvRows& rows, std::size_t field) {
   return limited(rows, field, "heading", 1e3 * kPi, "radians");
 }
 
-/// Why this cannot be a control or a component of a detection; empty if it can.
+/// The reason why `value` cannot be a control or a component of a detection; empty if it can.
 std::string fault_of(double value, Quantity quantity) {
   const Component& component = component_of(quantity);
   const bool is_too_near = quantity == Quantity::range && value <= 0.0;
@@ -190,7 +190,7 @@ void read_scans(const fs::path& path, DriveLog& log) {
   });
   const std::size_t fields = log.components.size() + (identified ? 1 : 0);
   std::vector<LoggedScan>& scans = log.scans;
-  std::set<std::int32_t> seen;  // in the last scan
+  std::set<std::int32_t> seen;  // identities in the last scan
   while (rows.next()) {
     const double time = time_in(rows, CsvRows::Order::not_earlier);
     const bool nothing = is_empty_scan(rows, fields);
@@ -287,7 +287,7 @@ std::vector<ReferencePath> read_references(const fs::path& folder) {
 /// and scans long after the last odometry. Odometry holds until its next record, so if none follows
 /// for that long, the file was probably cut.
 void check_times(const DriveLog& log, const fs::path& folder) {
-  constexpr double kLongestHold = 5.0;  // [s]
+  constexpr double kLongestHold = 5.0;  // [s] longest time without odometry
   const std::string scans = (folder / "detections.csv").string();
   const std::string odometry = (folder / "odometry.csv").string();
   const double first_scan = log.scans.front().time, last_scan = log.scans.back().time;
@@ -429,9 +429,9 @@ void write_log_csv(const DriveLog& log, const fs::path& folder, const fs::path& 
 
 namespace {
 
-constexpr double kLeastDeviation = 1e-9;  // [m, rad]
+constexpr double kLeastDeviation = 1e-9;  // [m, rad] least standard deviation
 
-/// Diagonal covariance from standard deviations in the fields from `first` on.
+/// The diagonal covariance of the standard deviations in the fields from `first` on.
 Eigen::Matrix3d covariance_of_sigmas(const CsvRows& rows, std::size_t first, int dimension) {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   for (int i = 0; i < dimension; ++i) {
@@ -459,7 +459,7 @@ bool is_positive_definite(const Eigen::Matrix3d& covariance, int dimension) {
          (factor.matrixLLT().diagonal().array().square() > kLeastPivot).all();
 }
 
-/// Covariance from its lower triangle, row by row, in the fields from `first` on.
+/// The covariance whose lower triangle is, row by row, in the fields from `first` on.
 Eigen::Matrix3d covariance_in(const CsvRows& rows, std::size_t first, int dimension) {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   std::size_t field = first;

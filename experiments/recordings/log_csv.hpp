@@ -11,7 +11,7 @@ namespace montecarta::experiments {
 /// Name of the reference in reference.csv. It comes first; the others follow in alphabetical order.
 inline const std::string kLeadingReference = "reference";
 
-/// "reference.csv" or "reference_NAME.csv"
+/// Name of the file of a reference: "reference.csv" or "reference_NAME.csv".
 inline std::string file_of_reference(const std::string& name) {
   return name == kLeadingReference ? "reference.csv" : "reference_" + name + ".csv";
 }
@@ -30,8 +30,8 @@ DriveLog read_log_csv(const std::filesystem::path& folder);
 /// writing fails.
 void write_log_csv(const DriveLog& log, const std::filesystem::path& folder);
 
-/// The same, but it writes references and landmarks, which an estimator must not see, to a separate
-/// folder. It must be new or empty too.
+/// Writes a log like the function above, but references and landmarks, which an estimator must not
+/// see, to a separate folder. That must be new or empty too.
 void write_log_csv(const DriveLog& log, const std::filesystem::path& folder,
                    const std::filesystem::path& truth_folder);
 
@@ -41,7 +41,7 @@ void write_log_csv(const DriveLog& log, const std::filesystem::path& folder,
 /// positive definite.
 ReferencePath read_reference_csv(const std::filesystem::path& path, const std::string& name);
 
-/// The text of such a file. Reading it gives the same numbers, bit for bit.
+/// The text of a file of a reference. Reading it gives the same numbers, bit for bit.
 std::string csv_of(const ReferencePath& reference);
 
 }  // namespace montecarta::experiments

@@ -47,7 +47,8 @@ class Bytes {
   void add(const ReferencePath& path) {
     add_name(path.name);
     add(path.time), add(path.position), add(path.heading);
-    if (!path.covariance.empty()) add(path.covariance);  // keeps fingerprints of drives without
+    // Fingerprints of drives without covariances do not change.
+    if (!path.covariance.empty()) add(path.covariance);
   }
   void add(const Eigen::Matrix3d& matrix) {
     for (const double element : matrix.reshaped()) add(element);
@@ -224,7 +225,7 @@ void RecordedDrive::end_step(double time, const Control& control) {
 
 void RecordedDrive::take_scan(const LoggedScan& scan, std::span<const Quantity> components,
                               const LogReach& reach) {
-  if (itinerary_.step_time.empty()) {  // at the start
+  if (itinerary_.step_time.empty()) {  // the vehicle is at the start
     itinerary_.step_time.push_back(0.0);
     drive_.controls.emplace_back();
   }

@@ -70,10 +70,10 @@ class SeveralDrives final : public DriveSource {
 
  private:
   std::vector<RecordedDrive> drives_;
-  Itinerary itinerary_;  ///< of the drive with the most scans, without references
+  Itinerary itinerary_;  ///< itinerary of the drive with the most scans, without references
 };
 
-/// A log either tells the identities of its detections or withholds them.
+/// Whether a log contains the identities of its detections.
 enum class Identities { told, withheld };
 
 /// Converts a drive with known truth to a log. RecordedDrive makes the same steps, controls and

@@ -19,7 +19,7 @@ struct CellSpec {
   /// All options of the filter, in its order and in canonical spelling, then the factors of
   /// mismatch_options() that are not 1.
   std::vector<std::pair<std::string, std::string>> options;
-  std::string distinction;  ///< from other cells of its filter, for legends: "100 particles"
+  std::string distinction;  ///< difference from other cells of its filter: "100 particles"
   std::string place;        ///< "file:line"
 };
 

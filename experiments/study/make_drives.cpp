@@ -102,7 +102,7 @@ void refuse_impossible_steering(const Settings& s, const DriveLog& log) {
   }
 }
 
-/// "speed, steer"
+/// Names of controls: "speed, steer".
 std::string names_of(std::span<const Quantity> controls) {
   std::vector<std::string> names;
   for (const Quantity control : controls) names.emplace_back(component_of(control).name);

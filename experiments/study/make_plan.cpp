@@ -60,7 +60,7 @@ ColumnSelection columns_of(const Settings& s) {
     if (group.is_chosen != nullptr)
       columns.*(group.is_chosen) = s.lists("record", "columns", group.name);
   }
-  if (columns.sums) {  // rows are not kept, so that these cost nothing
+  if (columns.sums) {  // rows are not kept, so these columns cost nothing
     columns.covariance = columns.ancestry = true;
     columns.full_runs = std::max<std::uint64_t>(columns.full_runs, 1);
   }

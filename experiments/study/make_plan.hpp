@@ -17,17 +17,18 @@ struct RunRange {
   std::uint64_t last = 0;
 };
 
-/// "A:B", half open; A or B may be left out. Throws StudyError unless 0 <= A < B <= runs.
+/// Parses "A:B", a half-open range; A or B may be left out. Throws StudyError unless 0 <= A < B <=
+/// runs.
 RunRange parse_run_range(const std::string& text, std::uint64_t runs);
-/// "I/N": the I-th (from 0) of N nearly equal ranges that follow each other and consist of whole
-/// units of so many runs. Throws StudyError unless I < N and there are N units.
+/// Parses "I/N", the I-th (from 0) of N nearly equal ranges that follow each other and consist of
+/// whole units of `runs_of_unit` runs. Throws StudyError unless I < N and there are N units.
 RunRange parse_shard(const std::string& text, std::uint64_t runs, std::uint64_t runs_of_unit = 1);
 
-/// Why the study cannot store joint estimates, as the end of a StudyError: "(why): remedy"; empty
-/// if it can.
+/// The reason why the study cannot store joint estimates, as the end of a StudyError: "(why):
+/// remedy"; empty if it can.
 std::string objection_to_joint(const Study& study);
 
-/// The same for the column observability.
+/// The reason why the study cannot store the column observability, in the same form.
 std::string objection_to_observability(const Study& study);
 
 /// Makes the plan of a study: its drives and its filters, for all runs or those in `range`. Filters

@@ -25,7 +25,8 @@ class SectionOfTable {
   SectionOfTable(const char* name, std::vector<Setting>& table, std::vector<std::string> kinds = {})
       : name_(name), kinds_(std::move(kinds)), table_(table) {}
 
-  // Each returns the setting, so that more can be said of it before the next one is added.
+  // Each function returns the setting, so that the caller can change it before the next one is
+  // added.
   Setting& add(const Parameter& parameter) const {
     return table_.emplace_back(Setting{parameter, name_, {{"scenario", "kind", kinds_}}});
   }
@@ -40,12 +41,12 @@ class SectionOfTable {
                  const char* meaning) const {
     return add(count_parameter(key, fallback, least, most, meaning));
   }
-  /// The first choice is the default.
+  /// Adds a setting with choices, of which the first is the default.
   Setting& choice(const char* key, const std::vector<std::string>& choices,
                   const char* meaning) const {
     return add(choice_parameter(key, choices.front(), choices, meaning));
   }
-  /// Settings that only some vehicles have.
+  /// Adds settings that only some vehicles have.
   void add_for_vehicles(const std::vector<Parameter>& parameters) const {
     for (const Parameter& parameter : parameters)
       only_if(add(parameter), "vehicle", parameter.applies_to);

@@ -58,7 +58,7 @@ std::string checked_number(const Parameter& option, std::string_view text,
                            const std::string& place) {
   const std::optional<double> value = to_number(text);
   if (!value || *value < option.least || *value > option.most) throw_bad_value(option, text, place);
-  return to_text(*value + 0.0);  // no negative zero
+  return to_text(*value + 0.0);  // the sum has no negative zero
 }
 
 std::string checked_count(const Parameter& option, std::string_view text,
@@ -225,7 +225,7 @@ void Settings::fill_in(const std::string& name) {
 /// use the value.
 std::string Settings::copied_from_scenario(const Setting& setting) const {
   if (!has("scenario", setting.key))
-    return setting.fallback.value();  // of another vehicle or sensor
+    return setting.fallback.value();  // the scenario has another vehicle or sensor
   const auto& [value, given_at] = at("scenario", setting.key);
   try {
     return checked_value(setting, value, given_at);
@@ -275,7 +275,7 @@ std::uint64_t Settings::count(std::string_view section, std::string_view key) co
 }
 
 double Settings::radians(std::string_view section, std::string_view key) const {
-  return number(section, key) / 180.0 * kPi;  // exact for 180
+  return number(section, key) / 180.0 * kPi;  // 180 is converted exactly
 }
 
 const std::string& Settings::place(std::string_view section, std::string_view key) const {

@@ -21,7 +21,7 @@ namespace montecarta::experiments {
 struct Study {
   Settings settings;
   std::vector<CellSpec> cells;
-  World world;  ///< of a simulation
+  World world;  ///< world of a simulation
   /// Recorded drives: one for all runs, or one for each run; empty in a simulation.
   std::vector<std::shared_ptr<const DriveLog>> logs;
   std::optional<StoppingRule> until;  ///< when a cell stops early

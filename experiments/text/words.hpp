@@ -13,15 +13,15 @@
 
 namespace montecarta::experiments {
 
-/// `text` without white space at either end.
+/// Returns `text` without white space at either end.
 std::string_view trimmed(std::string_view text);
 /// The trimmed parts of `text` between separators. The empty text has one empty part.
 std::vector<std::string> split(std::string_view text, char separator);
-/// Stores the same parts in `parts`, as views of `text`.
+/// Stores the parts that split() returns in `parts`, as views of `text`.
 void split_into(std::string_view text, char separator, std::vector<std::string_view>& parts);
 /// Joins texts: "a, b, c".
 std::string joined(std::span<const std::string> parts, std::string_view between = ", ");
-/// `text` as quoted in errors: its first 40 bytes, with ? for bytes that cannot be printed.
+/// Text of `text` in errors: its first 40 bytes, with ? for bytes that cannot be printed.
 std::string excerpt(std::string_view text);
 
 /// Shortens a message for a terminal: words of thousands of characters lose their middle, and a
@@ -31,7 +31,7 @@ std::string shortened(const std::string& message);
 /// Edit distance: the smallest number of insertions, deletions, replacements and swaps of
 /// neighbours that turn `a` into `b`, ignoring case.
 std::size_t edit_distance(std::string_view a, std::string_view b);
-/// "did you mean X?" for the known spelling nearest to `word`, else "known: a, b, c".
+/// A remedy: "did you mean X?" for the known spelling nearest to `word`, else "known: a, b, c".
 std::string nearest_spelling(std::string_view word, std::span<const std::string> known);
 
 /// The item of a container that name_of() calls `name`. If there is none, throws StudyError with
@@ -70,7 +70,7 @@ std::string to_text(double value);
 /// closed.
 std::vector<std::string> quoted_words(std::string_view text);
 
-/// `word` in double quotes, so that quoted_words() reads it back.
+/// Returns `word` in double quotes, so that quoted_words() reads it back.
 std::string in_quotes(std::string_view word);
 
 }  // namespace montecarta::experiments

@@ -16,7 +16,7 @@ namespace {
 using Branch = AncestryTree::Branch;
 constexpr std::size_t kNoBranch = AncestryTree::kNone;
 
-/// Walks from the last scan to the first; `alive` are the branches that are being followed.
+/// Walks from the last scan to the first; `alive_` are the lines that are being followed.
 class BranchTracer {
  public:
   BranchTracer(AncestryTree& tree, std::size_t particles, std::size_t most, double end)
@@ -31,8 +31,8 @@ class BranchTracer {
 
   bool is_over() const { return alive_.size() < 2; }
 
-  /// From particles to their parents, which lived at `time`. Lines of one parent become the branch
-  /// that leads to it.
+  /// Steps from particles to their parents, which existed at `time`. Lines that share a parent
+  /// become the branch that leads to it.
   void step_back(std::span<const std::uint32_t> parents, double time) {
     for (const DrawnLine& line : alive_) ++child_count_[parents[line.particle]];
     std::vector<DrawnLine> before;
@@ -66,19 +66,21 @@ class BranchTracer {
 
   AncestryTree& tree_;
   std::vector<DrawnLine> alive_;
-  std::vector<std::uint32_t> child_count_;  ///< {particle} that are alive; zero between steps
-  std::vector<std::size_t> open_;           ///< {particle} the branch that forks there
+  /// {particle} number of followed children; zero between steps.
+  std::vector<std::uint32_t> child_count_;
+  std::vector<std::size_t> open_;  ///< {particle} branch that forks at the particle
 };
 
-/// Places the lines: small families below large ones, parents half way between their first and last
-/// child.
+/// Sets the heights of the lines: small families are below large ones, and parents half way between
+/// their first and last child.
 void set_heights(AncestryTree& tree) {
   std::vector<Branch>& branches = tree.branches;
-  std::vector<std::vector<std::size_t>> children(branches.size() + 1);  // last: of the start
+  // The last one is that of the start.
+  std::vector<std::vector<std::size_t>> children(branches.size() + 1);
   for (std::size_t b = 0; b < branches.size(); ++b) {
     children[std::min(branches[b].parent, branches.size())].push_back(b);
   }
-  std::vector<double> below(branches.size() + 1, 0.0);  // leaves below a branch's own
+  std::vector<double> below(branches.size() + 1, 0.0);  // number of leaves below a branch's own
   for (std::size_t b = branches.size() + 1; b-- > 0;) {
     std::ranges::stable_sort(children[b], {}, [&](std::size_t c) { return branches[c].leaves; });
     double next = below[b];
@@ -118,12 +120,12 @@ namespace {
 
 constexpr std::size_t kMostTrees = 8, kMostLeaves = 100;
 
-/// A cell that is drawn.
+/// A cell whose tree is drawn.
 struct DrawnTree {
   std::string label;
   std::size_t style = 0;
   AncestryTree tree;
-  double end = 0.0;  ///< [s] of the run
+  double end = 0.0;  ///< [s] end of the run
 };
 
 std::vector<DrawnTree> drawn_trees(const ResultFile& file, std::size_t run) {
@@ -141,7 +143,7 @@ std::vector<DrawnTree> drawn_trees(const ResultFile& file, std::size_t run) {
   return drawn;
 }
 
-/// A row for every branch. A line that comes from the start has no height there but its own.
+/// A file with a row for every branch. A line that begins at the start has its own height there.
 FigureData data_of(const DrawnTree& cell) {
   FigureData data{"ancestry_" + cell.label + ".csv"};
   for (const AncestryTree::Branch& branch : cell.tree.branches) {
@@ -156,7 +158,8 @@ FigureData data_of(const DrawnTree& cell) {
   return data;
 }
 
-/// The cell, how many of its particles are drawn, and the age of their youngest common ancestor.
+/// Title of a panel: the cell, how many of its particles are drawn, and the age of their youngest
+/// common ancestor.
 std::string title_of(const DrawnTree& cell) {
   const AncestryTree& tree = cell.tree;
   const double since = tree.common_ancestor();
@@ -169,7 +172,8 @@ std::string title_of(const DrawnTree& cell) {
               : ", common ancestor " + readable(cell.end - since, 3) + " s before the end");
 }
 
-/// The tree as one line with gaps: from its parent's height to its own, and on to its end.
+/// The tree as one line with gaps; every branch goes from its parent's height to its own, and on to
+/// its end.
 ChartMarks lines_of(const DrawnTree& cell, const Frame& data) {
   constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
   ChartMarks lines;
@@ -215,7 +219,7 @@ Figure ancestry_figure(const ResultFile& file, std::optional<std::uint64_t> run)
   for (const DrawnTree& cell : cells) {
     figure.data.push_back(data_of(cell));
     figure.chart.panels.push_back(chart_panel(cell, figure.data.back().frame));
-    if (cell.tree.common_ancestor() == 0.0) continue;  // nothing to enlarge
+    if (cell.tree.common_ancestor() == 0.0) continue;  // there is nothing to enlarge
     figure.chart.x_first = std::min(figure.chart.x_first, begin_of_resolved(cell));
   }
   if (figure.chart.x_first < end) {

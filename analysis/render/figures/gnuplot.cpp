@@ -18,9 +18,10 @@
 namespace montecarta::analysis {
 namespace {
 
-// [px]
-constexpr double kCharacter = 7.8;  // the width of most characters, in either font
-constexpr double kAxisRoom = 76.0, kNarrowAxisRoom = 48.0;  // beside a panel: numbers and label
+// Sizes in px.
+constexpr double kCharacter = 7.8;  // width of most characters, in either font
+// Room beside a panel for numbers and label.
+constexpr double kAxisRoom = 76.0, kNarrowAxisRoom = 48.0;
 constexpr double kRightRoom = 14.0, kHeading = 26.0, kTicks = 54.0, kGap = 18.0;
 constexpr std::size_t kMostColumns = 3;
 constexpr double kSingleHeight = 250.0, kUsualHeight = 160.0, kStripPitch = 22.0;
@@ -28,7 +29,7 @@ constexpr std::size_t kStripKeyHeight = 42;
 
 bool has_strips(const Chart& chart) { return !chart.panels.front().strips.rows.empty(); }
 
-/// Left and right of a panel: names and notes of strips have the room that they need.
+/// Room left and right of a panel; names and notes of strips have the room that they need.
 std::array<double, 2> side_rooms(const Chart& chart, bool headings) {
   if (!has_strips(chart)) return {headings ? kNarrowAxisRoom : kAxisRoom, kRightRoom};
   std::size_t name = 0, note = 0;
@@ -51,7 +52,7 @@ double panel_height(const Chart& chart, double panel_width) {
   return chart.panels.size() == 1 ? kSingleHeight : kUsualHeight;
 }
 
-/// Returns whether labels stand above their panels: also where one is too long to stand beside its
+/// Returns whether labels stand above their panels, also if one is too long to stand beside its
 /// axis.
 bool has_headings(const Chart& chart, std::size_t columns) {
   if (columns > 1 || !chart.panels.front().cell.empty() || has_strips(chart)) return true;
@@ -119,7 +120,7 @@ void run_gnuplot(const std::filesystem::path& directory, const std::vector<std::
     if (said.find_first_not_of(" \t^\n") != said.npos) last = said.substr(0, said.find('\n'));
   }
   const int status = ::pclose(output);
-  constexpr int kNotFound = 127;  // says the shell
+  constexpr int kNotFound = 127;  // exit status of the shell
   if (WIFEXITED(status) && WEXITSTATUS(status) == kNotFound) {
     throw StudyError(program +
                      ": not found (it draws the figures): install it, on Debian with 'apt-get "
@@ -141,7 +142,7 @@ namespace {
 using Shape = ChartMarks::Shape;
 using Columns = std::vector<const std::vector<double>*>;
 
-constexpr double kBeyondAnyAxis = 1e100;  // gnuplot knows no infinity
+constexpr double kBeyondAnyAxis = 1e100;  // gnuplot has no infinity
 
 /// A data block. A row that begins with NaN interrupts a line.
 std::string block(const std::string& name, const Columns& columns) {
@@ -205,8 +206,8 @@ class PanelWriter {
     if (!panel_.strips.rows.empty()) add(strip_boxes(panel_, chart.x_to));
   }
 
-  const std::string& numbers() const { return numbers_; }  ///< data blocks
-  /// Behind "plot".
+  const std::string& numbers() const { return numbers_; }  ///< text of the data blocks
+  /// Text that follows "plot".
   std::string commands() const { return commands_.empty() ? "NaN notitle" : commands_; }
 
  private:
@@ -264,7 +265,7 @@ class PanelWriter {
   std::size_t count_ = 0;
 };
 
-/// Behind the legend, for which all of it is off.
+/// Settings of a panel. They follow those of the legend, for which everything is off.
 constexpr const char* kPanelStyle = R"(set key off
 set border 3 linewidth 0.8 linecolor rgb 'black'
 set tics nomirror out scale 0.6
@@ -284,7 +285,8 @@ std::string range(const char* axis, double from, double to) {
          "]\n";
 }
 
-/// One label for all columns stands below the drawing (common_label()).
+/// Commands for the horizontal axis of a panel. The label common to all columns is below the
+/// drawing (common_label()).
 std::string horizontal_axis(const Chart& chart, const PanelBox& box) {
   const std::string label = box.is_alone_in_row
                                 ? "set xlabel " + gnuplot_quoted(chart.x_label) + " offset 0,0.4\n"
@@ -299,7 +301,7 @@ std::string common_label(const Chart& chart, const PrintLayout& layout) {
          readable(10.0 / layout.height, 4) + " center\n";
 }
 
-/// The range of curves and bands, unless the axis gives one.
+/// Upper end of the vertical axis: that of curves and bands, unless the axis gives one.
 double upper_end(const ChartPanel& panel) {
   if (!std::isnan(panel.axis.high)) return panel.axis.high;
   double greatest = panel.axis.low;
@@ -313,7 +315,7 @@ double upper_end(const ChartPanel& panel) {
   return greatest > panel.axis.low ? 1.05 * greatest : panel.axis.low + 1.0;
 }
 
-/// A distance of 1, 2 or 5 times a power of ten that leaves room for the numbers.
+/// Ticks at distances of 1, 2 or 5 times a power of ten that leave room for the numbers.
 std::string linear_ticks(double from, double to, double pixels) {
   const double least = (on_axis(to) - on_axis(from)) * 26.0 / pixels;
   const double power = std::pow(10.0, std::floor(std::log10(least)));
@@ -322,7 +324,7 @@ std::string linear_ticks(double from, double to, double pixels) {
   return "set ytics nomirror " + command_number(step) + "\n";
 }
 
-/// Names to the left and notes to the right of the rows.
+/// Commands for names left and notes right of the rows of strips.
 std::string strip_axis(const ChartPanel& panel) {
   std::string names, notes;
   const auto note = [&](const std::string& text, const std::string& at) {
@@ -368,7 +370,8 @@ struct LegendEntry {
   std::string how, words;
 };
 
-/// Legend: bands, then cells that no heading names or, on maps, the kinds of marks.
+/// The entries of the legend: bands, then cells that no heading names or, on maps, the kinds of
+/// marks.
 std::vector<LegendEntry> legend_of(const Chart& chart) {
   std::vector<LegendEntry> entries;
   const auto add = [&](const std::string& how, const std::string& words) {
@@ -395,7 +398,8 @@ std::size_t legend_columns(const std::vector<LegendEntry>& entries, std::size_t 
   return std::clamp<std::size_t>((width - 90) / (8 * longest + 68), 1, entries.size());
 }
 
-/// A plot of nothing across the whole drawing: the legend of a panel is no wider than the panel.
+/// An empty plot across the whole drawing, for the legend: a panel's legend is no wider than the
+/// panel.
 std::string legend_plot(const std::vector<LegendEntry>& entries, std::size_t columns,
                         const PanelBox& box, double width, double height) {
   std::string script = "unset border\nunset tics\nunset grid\n" + place(box, width, height) +
@@ -407,7 +411,7 @@ std::string legend_plot(const std::vector<LegendEntry>& entries, std::size_t col
   return script + "NaN notitle\n";
 }
 
-/// The drawing from its upper left corner, in pixels.
+/// The drawing in pixels from its upper left corner.
 class Sheet {
  public:
   Sheet(double width, double height) : width_(width), height_(height) {}
@@ -428,8 +432,8 @@ class Sheet {
   double width_, height_;
 };
 
-/// Commands that draw the colour scale of strips, above them in place of a legend. It is aligned
-/// with the strips in `box` if there is room in a drawing of this size [px].
+/// Commands that draw the colour scale of strips above them instead of a legend. It is aligned with
+/// the strips in `box` if there is room in a drawing of this size [px].
 std::string strip_key(const ChartStrips& strips, const PanelBox& box, double width, double height) {
   const Sheet sheet(width, height);
   constexpr double kTop = 6.0, kBottom = 18.0, kMiddle = 12.0, kText = 29.0;
@@ -491,15 +495,15 @@ GnuplotChart gnuplot_chart(const Chart& chart, std::size_t width) {
 
 namespace {
 
-/// Settings common to all figures. The page gives black parts the colour of the text.
+/// Settings common to all figures. The page shows black parts in the colour of the text.
 constexpr const char* kStyle = R"(set encoding utf8
 set datafile separator comma
 set datafile columnheaders
 set key noenhanced samplen 1.6 width 1
 )";
 
-/// The whole script: the same figure for the page and for print, with as much room for a row of the
-/// legend in both.
+/// The whole script. It draws the figure for the page and for print, with as much room for a row of
+/// the legend in both.
 std::string script_of(const Figure& figure) {
   const GnuplotChart drawn = gnuplot_chart(figure.chart, figure.width);
   const std::string size = std::to_string(figure.width) + "," + std::to_string(drawn.height);

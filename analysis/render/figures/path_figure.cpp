@@ -54,7 +54,8 @@ std::vector<Ellipse> StoredMap::at(std::size_t scan) const {
 
 namespace {
 
-/// Bounds of the points (x, y) in columns `x` and `x` + 1, as far as they lie within the limit.
+/// Extends `bounds` to the points (x, y) in columns `x` and `x` + 1, as far as they lie within the
+/// limit.
 void include(const Frame& points, std::size_t x, Bounds& bounds, const Bounds& limit = {}) {
   for (std::size_t k = 0; k < points.rows(); ++k) {
     const double at_x = points.columns[x].numbers[k], at_y = points.columns[x + 1].numbers[k];
@@ -62,7 +63,7 @@ void include(const Frame& points, std::size_t x, Bounds& bounds, const Bounds& l
   }
 }
 
-/// Drops the few fixes that lie far from all others.
+/// Bounds of the fixes without the few that lie far from all others.
 Bounds bounds_of_fixes(const Frame& fixes) {
   constexpr double kWild = 0.01;
   Bounds bounds;
@@ -108,7 +109,7 @@ Bounds Bounds::grown(double share) const {
 
 namespace {
 
-/// Bounds of paths with their truth, and of landmarks.
+/// Bounds of landmarks, and of paths with their truth.
 Bounds path_bounds(const std::vector<DrawnPath>& cells, const FigureData& landmarks) {
   Bounds bounds;
   for (const DrawnPath& cell : cells) {
@@ -133,7 +134,7 @@ Bounds recorded_bounds(const std::vector<DrawnPath>& cells, const FigureData& fi
   return bounds.widened();
 }
 
-/// In how many cells each run is complete.
+/// {run} Number of cells in which the run is complete.
 std::vector<std::size_t> completeness(const ResultFile& file) {
   std::vector<std::size_t> cells(file.runs().size());
   for (const StoredCell& cell : file.cells()) {
@@ -148,7 +149,7 @@ std::vector<std::size_t> completeness(const ResultFile& file) {
 constexpr std::size_t kMostPoints = 500;
 constexpr std::size_t kMostRecorded = 1500;  // a recorded drive is kilometres long
 constexpr std::size_t kMostFixes = 600;
-constexpr std::size_t kPoseEllipses = 16;  // along a path
+constexpr std::size_t kPoseEllipses = 16;  // number of ellipses along a path
 
 const Frame kNoEllipses{
     {{"x", "m"}, {"y", "m"}, {"major diameter", "m"}, {"minor diameter", "m"}, {"angle", "deg"}}};
@@ -187,8 +188,8 @@ FigureData fix_data(const ResultFile& file, std::size_t run_index) {
 
 namespace {
 
-/// (time, true x, true y, x, y) at up to some hundred scans of a run; (time, x, y) without a known
-/// truth.
+/// Rows (time, true x, true y, x, y) at most some hundred scans of a run; (time, x, y) without a
+/// known truth.
 FigureData path_data(const ResultFile& file, const StoredCell& cell, const RunRows& run) {
   FigureData data{"path_" + cell.label + ".csv", {{{"time", "s"}, {"x", "m"}, {"y", "m"}}}};
   const bool has_truth = !run.truth.empty();
@@ -234,7 +235,7 @@ FigureData map_data(const ResultFile& file, const StoredCell& cell, std::size_t 
   return data;
 }
 
-/// True landmarks in a run.
+/// True positions of the landmarks in a run.
 FigureData landmark_data(const ResultFile& file, std::size_t run_index) {
   FigureData data{"landmarks.csv", {{{"x", "m"}, {"y", "m"}}}};
   for (const auto& at : file.landmarks_of(run_index)) data.frame.push({at.x(), at.y()});
@@ -247,7 +248,7 @@ const std::vector<double>& column(const FigureData& data, std::size_t which) {
   return data.frame.columns[which].numbers;
 }
 
-/// Marks at columns `x` and `x` + 1.
+/// Marks at the points in columns `x` and `x` + 1.
 ChartMarks marks_at(const FigureData& data, std::size_t x, const std::string& name, Shape shape,
                     std::size_t style) {
   ChartMarks marks;
@@ -268,7 +269,7 @@ ChartMarks ellipses_of(const FigureData& data, const std::string& name, std::siz
   return marks;
 }
 
-/// (time, true x, true y, x, y); (time, x, y) without a known truth.
+/// Adds paths from rows (time, true x, true y, x, y), or (time, x, y) without a known truth.
 void add_paths(const DrawnPath& cell, ChartPanel& panel) {
   const bool has_truth = cell.path.frame.columns.size() == 5;
   const std::size_t x = has_truth ? 3 : 1;
@@ -319,7 +320,7 @@ DrawnPath drawn_path(const ResultFile& file, std::size_t cell_index, std::size_t
   const RunRows run = read_run(file, cell, run_index);
   DrawnPath drawn{
       cell.label, cell_index, path_data(file, cell, run), {}, map_data(file, cell, run_index)};
-  // On a recorded drive they would be far smaller than a line is thick.
+  // On a recorded drive the ellipses would be far smaller than a line is thick.
   if (file.has_truth()) drawn.poses = pose_ellipses(cell, run);
   return drawn;
 }

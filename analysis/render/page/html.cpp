@@ -12,7 +12,7 @@
 namespace montecarta::analysis {
 namespace {
 
-/// Empty values are left out, since a page has many panels.
+/// Adds values unless they are empty, since a page has many panels.
 template <class Values>
 void add_if_any(const char* name, const Values& values, Json& json) {
   if (values.empty()) return;
@@ -82,7 +82,7 @@ Json json_of(const ChartStrips& strips) {
   return json;
 }
 
-/// A panel without x has that of the panel above.
+/// JSON of a panel. A panel without x has the x of the panel above.
 Json json_of(const ChartPanel& panel, const std::vector<double>* x_above) {
   Json json = {{"label", panel.label}};
   add_if_any("cell", panel.cell, json);
@@ -97,15 +97,17 @@ Json json_of(const ChartPanel& panel, const std::vector<double>* x_above) {
   return json;
 }
 
-/// A browser that reads this asks nobody for anything, not even for an icon.
+/// A policy that keeps the browser from loading anything, even an icon.
 constexpr const char* kNoNetwork =
     "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
     "style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:\">\n"
     "<link rel=\"icon\" href=\"data:,\">\n";
 
-/// Verdicts and failures are seen at a glance; the word itself says the same without the colour.
+/// The CSS class that colours verdicts and failures; without the colour the word itself says the
+/// same.
 std::string class_of(const std::string& text, Align align) {
-  constexpr std::size_t kLong = 24;  // characters: more are broken into lines on a narrow page
+  // [characters] longer texts are broken into lines on a narrow page.
+  constexpr std::size_t kLong = 24;
   std::string names = align == Align::right ? "right" : text.size() > kLong ? "long" : "";
   const bool bad = text.starts_with("optimistic") || text.starts_with("inconsistent") ||
                    text.starts_with("better in no") || text.find("FAILED") != std::string::npos;
@@ -136,7 +138,7 @@ Json rounded(const std::vector<double>& values, int digits) {
 }
 
 std::string script_text(const Json& json) {
-  // "<" could end the script, and is found within texts only.
+  // "<" could end the script; it occurs only within texts.
   return replaced(json.dump(-1, ' ', false, Json::error_handler_t::replace), "<", "\\u003c");
 }
 
@@ -208,9 +210,10 @@ std::string inline_svg(const std::string& svg, const std::string& name,
   part = replaced(part, "id='", "id='" + name + "_");
   part = replaced(part, "href='#", "href='#" + name + "_");
   part = replaced(part, "url(#", "url(#" + name + "_");
-  // The paper belongs to the file alone: on a page the page is the paper.
+  // Only the file has a white background; on a page there is none.
   part = replaced(part, "fill=\"#ffffff\"", "fill=\"none\"");
-  // Black on a light page, light on a dark one; gnuplot writes it in two ways.
+  // Black becomes the colour of the text, which is light on a dark page; gnuplot writes black in
+  // two ways.
   part = replaced(part, "rgb(0,0,0)", "currentColor");
   part = replaced(part, "rgb(  0,   0,   0)", "currentColor");
   return replaced(

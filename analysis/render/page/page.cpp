@@ -32,7 +32,7 @@ std::string html_heading(int level, const std::string& title) {
   return title.empty() ? "" : "<" + name + ">" + html_escape(title) + "</" + name + ">\n";
 }
 
-/// A figure's numbers; where there are many files, folded away.
+/// Links to a figure's numbers, folded away if there are many files.
 std::string links_to_numbers(const Figure& figure) {
   constexpr std::size_t kFew = 4;
   std::string links;
@@ -55,7 +55,7 @@ std::string links_of(const Figure& figure) {
          links_to_numbers(figure);
 }
 
-/// The drawing, and the numbers from which the script makes a drawing that can be asked.
+/// The drawing, and the numbers from which the script makes an interactive drawing.
 std::string html_drawing(const Figure& figure, const fs::path& directory) {
   const std::string svg = read_text(directory / "figures" / (figure.name + ".svg"));
   const std::string chart =
@@ -65,7 +65,7 @@ std::string html_drawing(const Figure& figure, const fs::path& directory) {
          links_of(figure) + "</figcaption>\n</figure>\n";
 }
 
-/// Each figure with a heading that does not repeat that of the section, and a sentence with a "?"
+/// Figures, each with a heading that does not repeat that of the section, and a sentence with a "?"
 /// that opens the others.
 std::string html_figures(const Section& section, const fs::path& directory) {
   const int level = section.title.empty() ? 2 : 3;
@@ -84,7 +84,8 @@ std::string html_figures(const Section& section, const fs::path& directory) {
   return html;
 }
 
-/// HTML of a table or of HTML. Notes are opened by a "?", and cards have the text of leads.
+/// HTML of a block that is a table or HTML. Notes are opened by a "?", and leads are shown on
+/// cards.
 std::string html_of(const Section::Block& block) {
   if (const auto* table = std::get_if<Section::Table>(&block)) return html_table(table->table);
   const auto* html = std::get_if<Section::Html>(&block);
@@ -97,7 +98,7 @@ std::vector<std::string> notes_of(const Section& section) {
   return notes;
 }
 
-/// "Is it so? Hardly.", "Map: landmark RMSE 0.1 m"
+/// Heading of a folded section: "Is it so? Hardly.", "Map: landmark RMSE 0.1 m".
 std::string folded_heading(const Section& section) {
   const std::string colon = section.title.ends_with('?') || section.summary.empty() ? "" : ":";
   return "<h2>" + html_escape(section.title) + colon + "</h2> <span class=\"says\">" +
@@ -117,7 +118,7 @@ std::string html_of(const Section& section, const fs::path& directory) {
          body + "</details>\n</section>\n";
 }
 
-/// Failures of a study that fails a thousand times are not worth a thousand lines.
+/// The most rows of a table on the page, since a study may fail a thousand times.
 constexpr std::size_t kMostTableRows = 60;
 
 std::string markdown_escape(const std::string& text) {
@@ -135,7 +136,7 @@ std::string markdown_row(const std::vector<std::string>& texts) {
   return row + "\n";
 }
 
-/// The value of a pair, "unknown" where there is none.
+/// The value of a key, "unknown" if there is none.
 std::string value_of(const TextPairs& pairs, std::string_view key) {
   const auto found = std::ranges::find(pairs, key, [](const auto& pair) { return pair.first; });
   return found == pairs.end() ? "unknown" : found->second;
@@ -166,7 +167,7 @@ std::string markdown_section(const Section& section) {
   return tables.empty() ? "" : heading + tables;
 }
 
-/// The first one over time; empty where there is none.
+/// The first figure over time as Markdown; empty if there is none.
 std::string markdown_leading_figure(const std::vector<Section>& sections) {
   for (const Section& section : sections) {
     for (const Figure& figure : section.figures) {
@@ -181,7 +182,7 @@ std::string details(const std::string& summary, const std::string& content) {
   return "<details><summary>" + summary + "</summary>" + content + "</details>\n";
 }
 
-/// The numbers of its rows that are better and worse.
+/// Text of the numbers of comparisons that are better and worse.
 std::string comparison_summary(const Comparisons& all) {
   std::size_t better = 0, worse = 0;
   for (const CellComparison& row : all.rows) {

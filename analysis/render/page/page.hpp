@@ -14,23 +14,23 @@
 
 namespace montecarta::analysis {
 
-// The parts of a report that belong to no metric.
+// Parts of a report that belong to no metric.
 
-/// The subject of the study, for someone who knows nothing of it.
+/// A sentence on the subject of the study, for a reader who knows nothing about it.
 std::string studied_sentence(const StudyAnalysis& study);
-/// The page's heading: which study, how much of it.
+/// The page's heading: the name of the study, and how much of it the file holds.
 Section title_section(const StudyAnalysis& study);
 /// The failed runs, with reasons.
 Section failure_section(const StudyAnalysis& study);
-/// Compares every cell with the first one, if two cells have truth.
+/// A comparison of every cell with the first one, if two cells have truth.
 Section comparison_section(const StudyAnalysis& study, const StudyComparison& comparison);
-/// The notes of sections that have nothing else: the missing data, and the columns to record.
+/// The notes of sections without other content: the missing data, and the columns to record.
 Section missing_section(const std::vector<Section>& sections);
-/// Study, scenario and provenance.
+/// The study file, the scenario and the provenance.
 Section origin_section(const ResultFile& file, const StudyAnalysis& study);
 
 /// Writes index.html with these sections in their order, folded or open, and their tables below
-/// tables/ into `directory`, below which their figures are drawn already (draw()).
+/// tables/ in `directory`. Their figures must be drawn there already (draw()).
 void write_page(const StudyAnalysis& study, const std::vector<Section>& sections,
                 const std::filesystem::path& directory);
 
@@ -38,8 +38,8 @@ void write_page(const StudyAnalysis& study, const std::vector<Section>& sections
 std::string markdown_table(const TextTable& table);
 
 /// A report in one short page of Markdown: the study, where and when it ran, failed runs, the
-/// tables of the terminal, the first figure over time (figures/NAME.svg) and, where a paper is
-/// repeated, its numbers beside the measured ones. `sections` in their order of reading.
+/// tables of the terminal, the first figure over time (figures/NAME.svg) and, if a paper is
+/// reproduced, its numbers beside the measured ones. `sections` are in the order of reading.
 std::string markdown_page(const StudyAnalysis& study, const std::vector<Section>& sections,
                           const TextPairs& provenance);
 

@@ -21,9 +21,9 @@
 namespace montecarta::analysis {
 namespace {
 
-/// The box of a curve [px]; left of it stand the numbers of the axis.
+/// [px] The box of a curve; the numbers of the axis are left of it.
 constexpr double kSparkLeft = 32.0, kSparkWidth = 240.0, kSparkHeight = 64.0;
-/// Powers of ten: the axis reaches at least from the first to the second, at most to the third.
+/// Powers of ten: the axis extends at least from the first to the second, and at most to the third.
 constexpr int kLeastDecade = -1, kUsualDecade = 1, kMostDecade = 5;
 
 const NeesSeries* judged_series(const CellAnalysis& cell) {
@@ -48,7 +48,7 @@ int highest_decade(const StudyAnalysis& study) {
 /// NEES by its dimension over time, on a logarithmic axis.
 struct Sparkline {
   int highest;      ///< power of ten at the upper end
-  double duration;  ///< [s] at the right end
+  double duration;  ///< [s] time at the right end
 
   double y(double ratio) const {
     const double share = (highest - std::log10(ratio)) / (highest - kLeastDecade);
@@ -91,7 +91,8 @@ struct Sparkline {
            pixels(y(bounds.lower / dimension) - top) + "\"/>";
   }
 
-  /// A bar below each eighth of the drive in which a deviation is shown, else below each such scan.
+  /// Bars below the eighths of the drive in which a deviation is shown; if there are none, below
+  /// the scans in which one is shown.
   std::string bars(const Verdict& verdict) const {
     for (const Family family : {Family::stretch, Family::scan}) {
       const FamilyTest* test = verdict.find(family);
@@ -149,7 +150,7 @@ std::string spark_html(const StudyAnalysis& study, const CellAnalysis& cell, std
          line.path(thinned, dimension) + "\"/>" + bars + "</svg>\n";
 }
 
-/// A number with its name; nothing where it is not known.
+/// HTML of a number with its name; empty if the number is not known.
 std::string number_html(const std::string& name, const std::string& value,
                         const std::vector<std::string>& notes) {
   if (value == "-") return "";

@@ -20,7 +20,7 @@ void write_row(const h5::Handle& group, const Frame::Row& row) {
   }
 }
 
-/// Adds the scale of its rows, if they have one.
+/// Writes columns, with the scale of their rows if they have one.
 void write_columns(const h5::Handle& group, const std::vector<Frame::Column>& columns,
                    const h5::Handle* scale) {
   for (const Frame::Column& column : columns) {
@@ -32,10 +32,10 @@ void write_columns(const h5::Handle& group, const std::vector<Frame::Column>& co
   }
 }
 
-/// Scales over which series of a cell go.
+/// Scales of the series of a cell.
 struct Times {
   h5::Handle scans;
-  std::vector<h5::Handle> fixes;  ///< {reference}
+  std::vector<h5::Handle> fixes;  ///< {reference} scale of its fixes
 };
 
 h5::Handle write_times(const h5::Handle& group, const std::string& name,
@@ -70,7 +70,7 @@ void write_bound(const h5::Handle& file, const CramerRaoBound& bound, const h5::
                     {"is_bound", "1", bound.is_bound ? 1.0 : 0.0}});
 }
 
-/// Every test of the verdict: a group for each family, with columns over its members.
+/// Writes every test of the verdict: a group for each family, with columns over its members.
 void write_families(const h5::Handle& cell_group, const Verdict& verdict) {
   const auto families = h5::create_group(cell_group, "families");
   for (const FamilyTest& test : verdict.families) {
@@ -103,7 +103,7 @@ void write_cell(const h5::Handle& cells, const StudyAnalysis& study, const CellA
 
 }  // namespace
 
-// HDF5 1.10 crashes at exit when a disk is full, so it is given none.
+// HDF5 1.10 crashes at exit when a disk is full, so it writes to memory and never to a disk.
 void write_analysis_file(const StudyAnalysis& study, const std::filesystem::path& path) {
   const auto file = h5::create_image(path.string());
   h5::put_text(file, "filetype", "montecarta-analysis");

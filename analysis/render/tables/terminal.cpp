@@ -19,7 +19,7 @@
 namespace montecarta::analysis {
 namespace {
 
-/// Runs of a cell that failed for one reason are one line.
+/// Prints the failed runs; those of a cell that failed for the same reason share a line.
 void print_failures(std::ostream& out, const StudyAnalysis& study, std::size_t width) {
   constexpr std::size_t kMost = 20;
   TextTable table;
@@ -55,7 +55,7 @@ std::vector<Section> terminal_sections(const StudyAnalysis& study) {
   return sections;
 }
 
-/// A blank line behind each.
+/// Prints the tables of a section, with a blank line after each.
 void print_section_tables(std::ostream& out, const Section& section, std::size_t width) {
   for (const auto& table : section.all<Section::Table>()) {
     print_table(out, table.table, width);

@@ -21,7 +21,7 @@ namespace {
 
 using Scans = std::vector<std::size_t>;
 
-/// Scans of the frames: every so many, the last one included.
+/// {frame} Scans at equal distances, the last one included; at most `most`.
 Scans frame_scans(std::size_t scans, std::size_t most) {
   const std::size_t stride = (scans + most - 1) / std::max<std::size_t>(most, 1);
   Scans frames;
@@ -38,7 +38,7 @@ std::vector<double> component(const std::vector<double>& rows, std::size_t which
   return values;
 }
 
-/// The ellipse of two standard deviations grown to hold kReplayShare of a Gaussian.
+/// The ellipse of two standard deviations enlarged to hold kReplayShare of a Gaussian.
 Ellipse grown(Ellipse ellipse) {
   static const double factor = std::sqrt(-2.0 * std::log(1.0 - kReplayShare)) / 2.0;
   ellipse.major *= factor;
@@ -57,7 +57,8 @@ std::vector<Ellipse> pose_ellipses_at(const MomentRows& moments, const Scans& fr
   return ellipses;
 }
 
-/// Ancestors of a failed run are zeros behind its end, which is a particle like any other.
+/// Reads the particles. After the end of a failed run its ancestors are zeros, which is a valid
+/// particle.
 ReplayParticles read_particles(const StoredCell& cell, const RunRows& rows, const Scans& frames,
                                std::size_t most) {
   if (rows.particle_pose.empty()) return {};
@@ -65,12 +66,13 @@ ReplayParticles read_particles(const StoredCell& cell, const RunRows& rows, cons
                         frames, most);
 }
 
-/// The NEES ratio of a complete run with known truth.
+/// Reads the NEES ratio of a complete run with known truth.
 void read_nees(const RunRows& rows, const StoredCell& cell, std::span<const double> times,
                const Scans& frames, ReplayCell& replay) {
   if (!replay.failure.empty() || rows.truth.empty()) return;
   RunMetrics metrics;
-  metrics.measure(rows, cell.particles, times, ErrorFrame::of_truth);  // the NEES has no frame
+  // The NEES does not depend on the frame.
+  metrics.measure(rows, cell.particles, times, ErrorFrame::of_truth);
   const NeesRows* nees = metrics.leading_nees();
   if (nees == nullptr) return;
   const auto dimension = static_cast<double>(nees->dimension.front());
@@ -79,7 +81,7 @@ void read_nees(const RunRows& rows, const StoredCell& cell, std::span<const doub
   replay.nees_band = {band.lower / dimension, band.upper / dimension};
 }
 
-/// Why a run failed; empty where it is complete.
+/// The reason why a run failed; empty if it is complete.
 std::string failure_of(const ResultFile& file, const StoredCell& cell, std::size_t run) {
   if (file.status(cell)[run] != RunStatus::failed) return "";
   return "failed at step " + std::to_string(file.failure_steps(cell)[run]) + ": " +
@@ -127,8 +129,8 @@ void add_surroundings(const ResultFile& file, std::size_t run, const Scans& fram
   }
 }
 
-/// [m] The size that the ellipses do not exceed in nine of ten frames: 1, 2 or 5 times a power of
-/// ten.
+/// [m] The size that the ellipses do not exceed in nine of ten frames, rounded to 1, 2 or 5 times a
+/// power of ten.
 double close_up_of(const Replay& replay) {
   std::vector<double> reach;
   for (const ReplayCell& cell : replay.cells) {
@@ -173,7 +175,8 @@ Replay read_replay(const ResultFile& file, std::size_t run, const ReplaySize& si
 
 namespace {
 
-/// [m] Nobody sees less in a drawing of the whole map: a thousandth of it, half a pixel.
+/// [m] The least change that is visible in a drawing of the whole map: a thousandth of it, half a
+/// pixel.
 double visible_change(const ResultFile& file, const StoredMap& stored, std::size_t run,
                       std::size_t last_scan) {
   Bounds bounds;
@@ -190,8 +193,8 @@ bool looks_alike(const Ellipse& a, const Ellipse& b, double least) {
          std::abs(a.major - b.major) < least && std::abs(a.minor - b.minor) < least;
 }
 
-/// The changes since `shown`, which is brought up to date. A landmark that is no longer in the
-/// map has an ellipse of NaN.
+/// The changes since `shown`, which is then updated. A landmark that is no longer in the map has an
+/// ellipse of NaN.
 std::vector<ReplayMap::DrawnLandmark> changes_at(const StoredMap& stored, std::size_t scan,
                                                  double least,
                                                  std::vector<std::optional<Ellipse>>& shown) {
@@ -235,14 +238,14 @@ namespace {
 
 using Indices = std::vector<std::uint32_t>;
 
-/// Index at scan `before` of the ancestor of particle `i` of scan `scan`.
+/// Index, at scan `before`, of the ancestor of particle `i` of scan `scan`.
 std::uint32_t ancestor_at(const StoredParticles& stored, std::size_t scan, std::size_t before,
                           std::uint32_t i) {
   for (; scan > before; --scan) i = stored.ancestor[scan * stored.count + i];
   return i;
 }
 
-/// Adds particles, evenly over the indices, until there are `most`; sorted.
+/// Adds particles, evenly over the indices, until there are `most`; the result is sorted.
 void fill_up(Indices& shown, std::size_t count, std::size_t most) {
   std::ranges::sort(shown);
   shown.erase(std::unique(shown.begin(), shown.end()), shown.end());
@@ -254,7 +257,7 @@ void fill_up(Indices& shown, std::size_t count, std::size_t most) {
   std::ranges::sort(shown);
 }
 
-/// Chooses the particles of frame `f - 1` and ties those of frame `f` to them.
+/// Chooses the particles of frame `f - 1`, and links those of frame `f` to them as their parents.
 void tie_to_parents(const StoredParticles& stored, std::span<const std::size_t> scans,
                     std::size_t f, std::size_t most, ReplayParticles& particles) {
   ReplayParticles::Snapshot& before = particles.frames[f - 1];
@@ -306,7 +309,7 @@ namespace {
 
 bool has_particles(const ReplayCell& cell) { return !cell.particles.frames.empty(); }
 
-/// The data of this file that the player shows.
+/// Text of the data that the player shows.
 std::string shown(const Replay& replay) {
   const auto if_any = [&](const char* key, const auto& has) {
     return std::ranges::any_of(replay.cells, has) ? prose("replay", key) : "";
@@ -323,7 +326,8 @@ std::string shown(const Replay& replay) {
        {"nees", if_any("nees", [](const ReplayCell& cell) { return !cell.nees.empty(); })}});
 }
 
-/// Explains which run of how many is shown, why, and whether more is stored of it than of others.
+/// Text that explains which run of how many is shown, why, and whether more is stored of it than of
+/// others.
 std::string which_run(const ResultFile& file, const Replay& replay) {
   const std::size_t index = *chosen_run(file, replay.run);
   const std::uint64_t runs = runs_in(file);
@@ -345,7 +349,7 @@ std::string which_run(const ResultFile& file, const Replay& replay) {
          prose("replay", "full runs", {{"runs", std::to_string(file.description().full_runs)}});
 }
 
-/// The columns to record to see more; empty if all are there, and for imported estimates.
+/// Text of the columns to record to see more; empty if all are there, and for imported estimates.
 std::string wanted(const ResultFile& file, std::size_t run) {
   if (file.cells().front().has("error")) return "";
   const auto lacks = [&](const char* column, bool of_particles) {
@@ -405,14 +409,14 @@ Json json_of(const std::vector<std::pair<double, double>>& points) {
   return array;
 }
 
-/// Diameters [m] and angle [deg].
+/// Adds diameters [m] and angle [deg].
 void add_size(const Ellipse& e, Json& array) {
   array.push_back(rounded(e.major, kSizeDigits));
   array.push_back(rounded(e.minor, kSizeDigits));
   array.push_back(rounded(e.angle, kAngleDigits));
 }
 
-/// Numbers from 0 on as digits of base 64, which take a third of the room of decimal ones.
+/// Adds a number >= 0 as digits of base 64, which are a third as long as decimal ones.
 void add_digits(double number, int count, std::string& text) {
   constexpr std::string_view kDigits =
       "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz-_";
@@ -424,13 +428,13 @@ void add_digits(double number, int count, std::string& text) {
   text += digits;
 }
 
-/// Two digits: 1 is `size` below, 4095 as much above; 0 where it is no number.
+/// Adds an offset as two digits: 1 is -`size`, 4095 is +`size`, and 0 is NaN.
 void add_place(double offset, double size, std::string& text) {
   const double share = std::round(2047.0 * offset / size);
   add_digits(std::abs(share) <= 2047.0 ? 2048.0 + share : 0.0, 2, text);
 }
 
-/// [m] The greatest distance from the estimate along an axis.
+/// [m] The greatest distance of a particle from the estimate along an axis.
 double reach_of(const ReplayParticles::Snapshot& frame, double x, double y) {
   double size = 0.0;
   for (std::size_t i = 0; i < frame.x.size(); ++i) {
@@ -441,8 +445,8 @@ double reach_of(const ReplayParticles::Snapshot& frame, double x, double y) {
   return 1.0001 * size + 1e-9;
 }
 
-/// Each particle: x and y by the estimate, four digits; its parent, two; the root of its
-/// weight, as dark as it is drawn, one.
+/// Text of the particles, each with x and y relative to the estimate (four digits), its parent (two
+/// digits), and the root of its weight (one digit), which is its opacity.
 Json json_of(const ReplayParticles::Snapshot& frame, double x, double y) {
   const double size = reach_of(frame, x, y);
   std::string dots, parents, weights;
@@ -468,7 +472,7 @@ void add_particles(const ReplayCell& cell, Json& json) {
   }
 }
 
-/// Row, centre [m], diameters [m] and angle [deg], six numbers a landmark.
+/// Six numbers for each landmark: row, centre [m], diameters [m] and angle [deg].
 Json json_of(const ReplayMap& map) {
   Json landmarks = Json::array();
   for (const auto& [row, ellipse] : map.changed) {

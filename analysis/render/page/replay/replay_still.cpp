@@ -23,16 +23,16 @@ struct Box {
   double left, top, width, height;
 };
 
-/// SVG that is put together piece by piece.
+/// An SVG document that is built piece by piece.
 class Drawing {
  public:
-  /// Everything until end() is cut off at the box.
+  /// Begins a group that is clipped to the box, until end().
   void begin(const Box& box) {
     svg_ += "<svg x=\"" + pixels(box.left) + "\" y=\"" + pixels(box.top) + "\" width=\"" +
             pixels(box.width) + "\" height=\"" + pixels(box.height) + "\">\n";
   }
   void end() { svg_ += "</svg>\n"; }
-  /// `style`: attributes.
+  /// Adds a path; `style` is a list of attributes.
   void path(const std::string& d, const std::string& style) {
     if (!d.empty()) svg_ += "<path d=\"" + d + "\" " + style + "/>\n";
   }
@@ -65,22 +65,23 @@ std::string stroke(const std::string& colour, double width, const char* opacity 
 
 constexpr const char* kText = "currentColor";
 constexpr const char* kTruth = "#999999";
-constexpr double kScaleCharacter = 7.0;  // [px] the width of a character of kSoftText, at most
+constexpr double kScaleCharacter = 7.0;  // [px] largest width of a character of kSoftText
 constexpr const char* kSoftText = "font-size=\"12\" fill=\"#777777\"";
 
-/// From metres to pixels of a box that is `width` by `height` [px], y upwards.
+/// Transformation from metres to pixels of a box that is `width` by `height` [px], with y upwards.
 struct View {
   double x_centre, y_centre, scale, width, height;
   double x(double metres) const { return width / 2.0 + (metres - x_centre) * scale; }
   double y(double metres) const { return height / 2.0 - (metres - y_centre) * scale; }
-  /// Returns false for values that are not numbers, too.
+  /// Returns whether a point is in the picture; false for NaN.
   bool shows(double metres_x, double metres_y) const {
     return std::abs(x(metres_x) - width / 2.0) < width &&
            std::abs(y(metres_y) - height / 2.0) < height;
   }
 };
 
-/// All that is seen of the drive, as a filter that is lost does not count.
+/// Bounds of the drive; those of the estimates only if nothing else is known, since a filter may be
+/// lost.
 Bounds bounds_of(const Replay& replay) {
   Bounds bounds;
   for (std::size_t f = 0; f < replay.x.size(); ++f) bounds.include(replay.x[f], replay.y[f]);
@@ -106,7 +107,7 @@ std::string point(double x, double y, const View& view) {
   return pixels(view.x(x)) + " " + pixels(view.y(y));
 }
 
-/// Gaps where there is no number, and between places that are both out of the picture.
+/// A path with gaps at NaN, and between points that are both out of the picture.
 std::string path_of(const std::vector<double>& x, const std::vector<double>& y, const View& view) {
   std::string d;
   const auto is_known = [&](std::size_t f) { return std::isfinite(x[f]) && std::isfinite(y[f]); };
@@ -121,7 +122,7 @@ std::string path_of(const std::vector<double>& x, const std::vector<double>& y, 
   return d;
 }
 
-/// The ways of the ancestors of the particles that are there at the end, each way once.
+/// The paths of the ancestors of the particles that exist at the end, each path once.
 std::string lineages_of(const ReplayCell& cell, const View& view) {
   const auto& frames = cell.particles.frames;
   std::string d;
@@ -152,7 +153,7 @@ void draw_ellipse(const Ellipse& e, const std::string& colour, const View& view,
                       "\" stroke-width=\"1.1\"");
 }
 
-/// The map after its last change.
+/// Draws the map after its last change.
 void draw_map(const ReplayCell& cell, const std::string& colour, const View& view,
               Drawing& drawing) {
   std::vector<ReplayMap::DrawnLandmark> latest;
@@ -198,7 +199,7 @@ void draw_particles(const ReplayCell& cell, const std::string& colour, double ra
   }
 }
 
-/// An arrow head at the end of a path.
+/// Draws an arrow head at the end of a path.
 void draw_vehicle(const std::vector<double>& x, const std::vector<double>& y,
                   const std::vector<double>& h, const View& view, const std::string& style,
                   Drawing& drawing) {
@@ -208,7 +209,7 @@ void draw_vehicle(const std::vector<double>& x, const std::vector<double>& y,
                                             pixels(-h.back() * 180.0 / kPi) + ")\" " + style);
 }
 
-/// A bar of a round number of metres, on the colour of the paper.
+/// Draws a bar of a round number of metres, on the colour of the paper.
 void draw_scale(const View& view, Drawing& drawing) {
   const double most = view.width / view.scale / 4.5;
   const double power = std::pow(10.0, std::floor(std::log10(most)));
@@ -223,7 +224,8 @@ void draw_scale(const View& view, Drawing& drawing) {
   drawing.text(12.0, y - 5.0, text, kSoftText);
 }
 
-/// `size` of dots and lines, by the usual.
+/// Draws truth, estimate, particles and map; `size` is that of dots and lines relative to the usual
+/// one.
 void draw_scene(const Replay& replay, const ReplayCell& cell, const View& view, double size,
                 Drawing& drawing) {
   const std::string colour = line_colour(cell.style);
@@ -263,7 +265,7 @@ GrowthAxes growth_axes(const Replay& replay, const Box& box) {
   return {box, replay.times.front(), replay.times.back(), std::min(greatest, kMostNees)};
 }
 
-/// A power of ten: from the third on with its exponent above.
+/// Text of a power of ten, from the third on with a raised exponent.
 std::string power_text(int power) {
   constexpr std::array kSuperscripts = {"\u2070", "\u00b9", "\u00b2", "\u00b3",
                                         "\u2074", "\u2075", "\u2076"};
@@ -301,7 +303,7 @@ void draw_growth(const Replay& replay, const ReplayCell& cell, const GrowthAxes&
   drawing.path(d, stroke(line_colour(cell.style), 1.3));
 }
 
-/// The name of the cell, and how it went.
+/// Draws the name of the cell with "failed" or its last NEES ratio.
 void draw_head(const ReplayCell& cell, const Box& box, Drawing& drawing) {
   drawing.circle(box.left + 6.0, box.top + 13.0, 6.0, "fill=\"" + line_colour(cell.style) + "\"");
   drawing.text(box.left + 20.0, box.top + 18.0, cell.label,
