@@ -81,8 +81,8 @@ std::vector<TextTable::Entry> drive_row(const CellAnalysis& cell, const JudgedRe
   const auto judged = [&](const std::string& text) { return is_judged ? text : "-"; };
   return {{"cell", cell.label, Align::left},
           {"reference", reference.name, Align::left},
-          {"runs", runs_in_words(cell), Align::left},
-          {"verdict", in_words(drive), Align::left},
+          {"runs", runs_in_words(cell), Align::left, tone_of_runs(cell)},
+          {"verdict", in_words(drive), Align::left, tone_of(drive.answer)},
           {"NEES / expected" + level, judged(block_text(drive, drive.mean.leading))},
           {"median / expected", judged(readable(drive.mean.median))},
           {"position" + level, judged(block_text(drive, ErrorBlock::position))},

@@ -5,6 +5,7 @@
 #include "analysis/run/measured_run.hpp"
 #include "analysis/study/cell_report.hpp"
 #include "analysis/study/strips.hpp"
+#include "analysis/study/verdict_table.hpp"
 #include "analysis/verdict/sentence.hpp"
 
 #include <algorithm>
@@ -82,7 +83,7 @@ std::vector<TextTable::Entry> joint_row(const CellAnalysis& cell,
       {"NEES / component", readable(joint.average.back())},
       {"band", interval_text(joint.bounds.back())},
       {"farthest from 1", readable(joint.average[worst]) + " at " + readable(times[worst]) + " s"},
-      {"verdict", in_words(joint.verdict)}};
+      {"verdict", in_words(joint.verdict), Align::right, tone_of(joint.verdict)}};
 }
 
 /// Adds notes on how to read the table, or the reason why there are no numbers; nothing if no joint

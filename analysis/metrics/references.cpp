@@ -61,7 +61,7 @@ std::vector<TextTable::Entry> reference_row(const StudyAnalysis& study, const Ce
   std::vector<TextTable::Entry> row = {
       {"cell", cell.label, Align::left},
       {"reference", study.references[r].name, Align::left},
-      {"runs", runs_in_words(cell), Align::left},
+      {"runs", runs_in_words(cell), Align::left, tone_of_runs(cell)},
       {"lost", study.references[r].fixes == 0 ? "-" : lost_text(cell, against)},
       {"raw RMS [m]", text(&ReferenceScores::rms)},
       {"raw median [m]", text(&ReferenceScores::median)},
@@ -117,8 +117,13 @@ std::vector<TextTable::Entry> baseline_row(const CellAnalysis& cell, const CellA
   const std::size_t better = leading.better_than(mean, score), runs = judged_runs(cell, leading);
   const bool is_baseline = &cell == baseline;
   row.push_back({"beats " + baseline->label, is_baseline ? "-" : of_text(better, runs)});
+  const bool is_compared = !is_baseline && runs > 0;
+  const Tone tone = is_compared && better == runs ? Tone::good
+                    : is_compared && better == 0  ? Tone::bad
+                                                  : Tone::plain;
   row.push_back({"against EKF-SLAM",
-                 is_baseline ? "is the baseline" : against_baseline(better, runs), Align::left});
+                 is_baseline ? "is the baseline" : against_baseline(better, runs), Align::left,
+                 tone});
   return row;
 }
 

@@ -39,7 +39,7 @@ class VerdictOverRuns final : public MergedSums<VerdictOverRuns> {
     if (!sums_) return;
     const InterimAnalysis analysis{.level = criteria_->level,
                                    .within = criteria_->within,
-                                   .looks = criteria_->looks,
+                                   .runs_at_analyses = criteria_->runs_at_analyses,
                                    .share_of_runs = criteria_->share_of_runs};
     cell.verdict =
         judge(*sums_, {criteria_->components, criteria_->times}, analysis, ended, cell.complete);

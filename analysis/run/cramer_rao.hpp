@@ -3,7 +3,6 @@
 
 #include "analysis/run/simulated_world.hpp"
 #include "analysis/statistics/spread.hpp"
-#include "analysis/statistics/sums.hpp"
 #include "engine/core/pose.hpp"
 #include "engine/records/result_file.hpp"
 
@@ -52,9 +51,9 @@ struct TruePath {
 CramerRaoBound squared_bound(const SimulatedWorld& world, const TruePath& path);
 
 /// The bound of a result file. If the noise is on the controls that filters receive, the path is
-/// the same in all runs, and so is the bound. If noise moves the vehicle, the result is a
-/// linearised reference, the average over the paths of the first kBoundRuns runs with a complete
-/// cell.
+/// the same in all runs, and so is the bound if the landmarks are; otherwise it is averaged over
+/// the first kBoundRuns runs with a complete cell. If noise moves the vehicle, the average is a
+/// linearised reference.
 class BoundOfStudy {
  public:
   explicit BoundOfStudy(const ResultFile& file);

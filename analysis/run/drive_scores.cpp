@@ -3,7 +3,6 @@
 
 #include "analysis/statistics/distributions.hpp"
 #include "analysis/statistics/sampler_scale.hpp"
-#include "analysis/statistics/sums.hpp"
 #include "engine/core/pose.hpp"
 
 #include <Eigen/Cholesky>

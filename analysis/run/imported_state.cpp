@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/run/imported_state.hpp"
 
-#include "analysis/statistics/sums.hpp"
-
 #include <algorithm>
 #include <cstddef>
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/statistics/sums.hpp"
 #include "engine/core/drive.hpp"
 #include "engine/core/pose.hpp"
 #include "filters/models/ackermann.hpp"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/run/map_scores.hpp"
 
-#include "analysis/statistics/sums.hpp"
 #include "engine/errors.hpp"
 
 #include <Eigen/Cholesky>

@@ -70,7 +70,8 @@ MapScores map_scores(const FinalMap& map, const MapCriteria& criteria,
 /// A surveyed beacon is found where an aligned landmark lies within this distance [m].
 inline constexpr double kFoundWithin = 1.0;
 
-/// Scores of the final map of a run against surveyed beacons. NaN if no beacon was found.
+/// Scores of the final map of a run against surveyed beacons. The distances are NaN if no
+/// beacon was found.
 struct BeaconScores {
   double found = 0.0;         ///< [1] number of beacons found
   double rms = kNaN;          ///< [m] RMS distance of the beacons found

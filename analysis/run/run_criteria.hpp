@@ -4,6 +4,7 @@
 #include "analysis/run/map_scores.hpp"
 #include "analysis/run/path_at_fixes.hpp"
 #include "analysis/run/run_metrics.hpp"
+#include "analysis/statistics/error_spending.hpp"
 #include "engine/core/judgement.hpp"
 
 #include <Eigen/Core>
@@ -36,7 +37,7 @@ struct RunCriteria {
   ErrorFrame frame = ErrorFrame::of_truth;
   bool calibrates = false;  ///< whether the PITs of errors are judged: only with matched noise
   /// {interim analysis} number of runs, if cells stop when their verdict is known; else empty.
-  std::vector<std::uint64_t> looks = {};
+  std::vector<std::uint64_t> runs_at_analyses = {};
   /// Share of the study's runs that the file has: less than 1 in a shard.
   double share_of_runs = 1.0;
   /// {component} names of the components of the judged errors.
@@ -48,7 +49,9 @@ struct RunCriteria {
 
   /// Level of a verdict on this number of runs, such that all interim analyses together have
   /// `level`.
-  double verdict_level(std::uint64_t runs) const;
+  double verdict_level(std::uint64_t runs) const {
+    return level_of_analysis(level, runs_at_analyses, runs);
+  }
 };
 
 }  // namespace montecarta::analysis

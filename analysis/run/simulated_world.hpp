@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/statistics/sums.hpp"
 #include "engine/records/result_file.hpp"
 #include "filters/models/field_of_view.hpp"
 #include "filters/models/sensor.hpp"

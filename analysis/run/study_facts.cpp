@@ -32,7 +32,7 @@ double margin_in(const std::string& study_text) {
                    " (a ratio from 1.001 to 100 is needed): choose another file");
 }
 
-std::vector<std::uint64_t> looks_in(const std::string& study_text, std::uint64_t runs) {
+std::vector<std::uint64_t> interim_analyses_in(const std::string& study_text, std::uint64_t runs) {
   const std::string until = study_setting(study_text, "until").value_or("");
   const std::string with_runs = std::string(kUntilVerdict) + ", ";  // "verdict, 100 runs"
   if (until != kUntilVerdict && !until.starts_with(with_runs)) return {};

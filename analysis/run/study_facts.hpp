@@ -21,6 +21,6 @@ double margin_in(const std::string& study_text);
 
 /// {interim analysis} Numbers of runs in a study of `runs` runs, if its cells stop by verdict; else
 /// empty: there is one analysis, after all runs.
-std::vector<std::uint64_t> looks_in(const std::string& study_text, std::uint64_t runs);
+std::vector<std::uint64_t> interim_analyses_in(const std::string& study_text, std::uint64_t runs);
 
 }  // namespace montecarta::analysis

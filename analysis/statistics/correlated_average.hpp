@@ -14,9 +14,10 @@ namespace montecarta::analysis {
 using VectorSeries = std::vector<std::vector<double>>;
 
 /// {lag} Squared Frobenius norm of the correlation matrix (about zero) of samples `lag` steps
-/// apart, divided by components x (mean square)^2; as many lags as samples. A white series with
-/// equal components has 1 at lag 0; no returned value is above 1. Correlations between two
-/// components count only where they are more than twice as large as chance makes them.
+/// apart, divided by components x (mean square)^2; as many lags as samples. The value is 1 at lag
+/// 0, at most 1 elsewhere, and 1 everywhere if the series is zero. Lags above 128 are partly
+/// interpolated. Correlations between two components count only where they are more than twice as
+/// large as chance makes them.
 std::vector<double> squared_correlations(const VectorSeries& series);
 
 /// {component}{lag} Semivariance: half of the mean squared difference of samples `lag` steps apart.

@@ -13,15 +13,18 @@ double spent(double alpha, double information) {
   return 2.0 * normal_cdf(normal_quantile(0.5 * alpha) / std::sqrt(information));
 }
 
-double level_of_look(double level, std::span<const std::uint64_t> looks, std::uint64_t runs) {
-  if (looks.size() < 2) return level;
-  const auto look = std::min(std::ranges::lower_bound(looks, runs), looks.end() - 1);
+double level_of_analysis(double level, std::span<const std::uint64_t> runs_at_analyses,
+                         std::uint64_t runs) {
+  if (runs_at_analyses.size() < 2) return level;
+  const auto next =
+      std::min(std::ranges::lower_bound(runs_at_analyses, runs), runs_at_analyses.end() - 1);
   const auto information = [&](std::uint64_t n) {
-    return static_cast<double>(n) / static_cast<double>(looks.back());
+    return static_cast<double>(n) / static_cast<double>(runs_at_analyses.back());
   };
   constexpr double kLeastSpent = 1e-10;  // a level nearer to 1 has no exact complement
-  const double before = look == looks.begin() ? 0.0 : spent(1.0 - level, information(*(look - 1)));
-  return 1.0 - std::max(spent(1.0 - level, information(*look)) - before, kLeastSpent);
+  const double before =
+      next == runs_at_analyses.begin() ? 0.0 : spent(1.0 - level, information(*(next - 1)));
+  return 1.0 - std::max(spent(1.0 - level, information(*next)) - before, kLeastSpent);
 }
 
 }  // namespace montecarta::analysis

@@ -7,7 +7,7 @@
 
 namespace montecarta::analysis {
 
-/// A closed interval. Both ends are NaN where there is none.
+/// A closed interval. Functions return NaN for both ends if there is none.
 struct Interval {
   double lower = 0.0;
   double upper = 0.0;

@@ -31,7 +31,7 @@ class RunMean {
   /// One-sided p-value against an expectation of 0 or less.
   double p_value_above_zero() const;
   /// Interval that holds the expectation with probability `level`. An end is infinite where the
-  /// runs exclude nothing.
+  /// runs exclude nothing; both are NaN for fewer than three runs.
   Interval interval(double level) const;
 
  private:

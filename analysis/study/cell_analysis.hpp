@@ -55,10 +55,10 @@ struct CellAnalysis {
   std::size_t complete = 0;
   std::size_t missing = 0;
   /// Number of runs not needed: the cell was precise enough, or its verdict known.
-  std::size_t spared = 0;
+  std::size_t not_needed = 0;
   /// Number of planned interim analyses of its verdict; 0 if there are none.
-  std::size_t looks_planned = 0;
-  std::size_t looks_made = 0;  ///< number of interim analyses made
+  std::size_t analyses_planned = 0;
+  std::size_t analyses_made = 0;  ///< number of interim analyses made
   std::vector<FailedRun> failures;
   Verdict verdict;  ///< verdict on the whole error by the leading moments
   /// Moments of the verdict: the first of kMoments that is stored.

@@ -15,9 +15,7 @@
 namespace montecarta::analysis {
 namespace {
 
-/// Fills CellAnalysis::score_intervals, and NeesResult::average_interval of every NEES from its
-/// runs. All share one bootstrap over runs at `level`; NEES in which some runs are not judged have
-/// one over the judged runs.
+/// Fills CellAnalysis::score_intervals. All scores share one bootstrap over runs at `level`.
 void put_score_intervals(CellAnalysis& cell, double level) {
   std::vector<std::vector<double>> columns;
   for (const Score& score : all_scores()) columns.push_back(cell.scores.column(score.name));

@@ -90,8 +90,8 @@ NeesSeries NeesAccumulator::series(double level) const {
   return series;
 }
 
-/// By the law by which the verdict judges its ratio (STATISTICS 5.1), so that one number has one
-/// interval everywhere.
+/// The interval by the law by which the verdict judges its ratio (STATISTICS 5.1). The two agree if
+/// the verdict has the same level and no component is known exactly.
 Interval NeesAccumulator::interval_of_mean(double level) const {
   const auto expected = static_cast<double>(dimension_);
   SummaryOf ratios;

@@ -19,7 +19,7 @@ namespace montecarta::analysis {
 class NeesAccumulator {
  public:
   NeesAccumulator() = default;  ///< empty sums, to be filled by a SumReader
-  /// `dimension` is the number of components of the block; 0: that of a pose in the plane.
+  /// `dimension` is the number of components of the block; 0: dimension_of(block).
   NeesAccumulator(ErrorBlock block, Moments moments, std::size_t scans, std::size_t dimension = 0);
   Moments moments() const { return moments_; }
   void add(const RunMetrics& metrics);
@@ -28,7 +28,7 @@ class NeesAccumulator {
   /// judge (empty: nowhere).
   void add(std::span<const double> value, std::span<const int> rank = {},
            std::span<const std::uint8_t> too_few = {});
-  /// The result; `level` is that of the bounds.
+  /// The result; `level` is that of the bounds and of the interval of the mean.
   NeesResult result(double level) const;
   static constexpr auto parts() {
     using Sums = NeesAccumulator;

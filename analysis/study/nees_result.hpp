@@ -22,7 +22,9 @@ struct NeesSeries {
   std::vector<Interval> bounds;
   std::vector<double> run_averages;  ///< {run with a NEES} mean over its scans
   std::uint64_t samples = 0;         ///< number of samples: scans x complete runs
-  std::uint64_t lower_rank = 0;  ///< number of samples judged in the range of a singular covariance
+  /// Number of samples with a singular covariance, judged in its range. Samples of rank 0 have no
+  /// NEES and are left out.
+  std::uint64_t lower_rank = 0;
   /// Number of samples left out of the average because error or covariance is not finite, or
   /// because the covariance is not positive semidefinite.
   std::uint64_t unusable = 0;
@@ -37,8 +39,10 @@ struct NeesResult {
   ErrorBlock block = ErrorBlock::pose;
   Moments moments = Moments::spread;
   NeesSeries series;
-  double mean = kNaN;              ///< mean of series.run_averages
-  Interval average_interval = {};  ///< interval of the mean over infinitely many runs (bootstrap)
+  double mean = kNaN;  ///< mean of series.run_averages
+  /// Interval of the mean over infinitely many runs (STATISTICS 5.1); NaN for fewer than three
+  /// runs.
+  Interval average_interval = {};
   /// Share of the scans with a valid run whose average is above the bounds.
   double share_above = 0.0;
   double share_below = 0.0;  ///< share of those scans whose average is below the bounds

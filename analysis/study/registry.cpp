@@ -63,9 +63,9 @@ Frame::Row numbers_of(const CellAnalysis& cell) {
   Frame::Row all = {{"runs_failed", "1", count(cell.failures.size())},
                     {"runs_complete", "1", count(cell.complete)},
                     {"runs_missing", "1", count(cell.missing)},
-                    {"runs_spared", "1", count(cell.spared)},
-                    {"looks_planned", "1", count(cell.looks_planned)},
-                    {"looks_made", "1", count(cell.looks_made)},
+                    {"runs_not_needed", "1", count(cell.not_needed)},
+                    {"interim_analyses_planned", "1", count(cell.analyses_planned)},
+                    {"interim_analyses_made", "1", count(cell.analyses_made)},
                     {"particles", "1", count(cell.particles)}};
   for (const Metric& metric : all_metrics()) {
     if (metric.scores_are_numbers) {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/study/section.hpp"
 
-#include "analysis/run/proper_scores.hpp"
-
 namespace montecarta::analysis {
 
 bool Section::has_content() const { return !figures.empty() || all<Note>().size() < blocks.size(); }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/statistics/sums.hpp"
 #include "analysis/study/figure.hpp"
 #include "analysis/study/prose.hpp"
 #include "analysis/study/text_table.hpp"

@@ -38,12 +38,12 @@ void expect_planned(const ResultFile& file, const StoredCell& cell, std::size_t 
 }
 
 /// Counts the interim analyses that were planned and made, by the runs that were made.
-void count_looks(const ResultFile& file, CellAnalysis& cell) {
-  const auto looks = looks_in(file.study_text(), file.study_runs());
+void count_analyses(const ResultFile& file, CellAnalysis& cell) {
+  const auto planned = interim_analyses_in(file.study_text(), file.study_runs());
   const std::uint64_t made = cell.runs.size() + cell.failures.size();
-  cell.looks_planned = looks.size();
-  cell.looks_made = static_cast<std::size_t>(
-      std::ranges::count_if(looks, [&](std::uint64_t look) { return look <= made; }));
+  cell.analyses_planned = planned.size();
+  cell.analyses_made = static_cast<std::size_t>(
+      std::ranges::count_if(planned, [&](std::uint64_t runs) { return runs <= made; }));
 }
 
 /// Indices in the file of the complete runs among the first `runs`. Counts them, and lists their
@@ -60,8 +60,8 @@ std::vector<std::size_t> complete_runs(const ResultFile& file, const StoredCell&
       ++cell.missing;
       if (!is_work_in_progress(file.path())) file.expect_whole(stored, i);
     }
-    if (status[i] == RunStatus::spared) {
-      ++cell.spared;
+    if (status[i] == RunStatus::not_needed) {
+      ++cell.not_needed;
       expect_planned(file, stored, i);
     }
     if (status[i] == RunStatus::failed) {
@@ -70,7 +70,7 @@ std::vector<std::size_t> complete_runs(const ResultFile& file, const StoredCell&
     }
   }
   for (const std::size_t i : complete) cell.runs.push_back(file.runs()[i]);
-  count_looks(file, cell);
+  count_analyses(file, cell);
   return complete;
 }
 
@@ -91,7 +91,7 @@ struct CellTask {
     StoredSums found = read_stored_sums(file, *stored_cell, criteria, parallel);
     cell.runs = std::move(found.complete);
     cell.failures = std::move(found.failures);
-    count_looks(file, cell);
+    count_analyses(file, cell);
     return std::move(found.sums);
   }
 
@@ -173,7 +173,7 @@ StudyAnalysis begin(const ResultFile& file, double level, std::optional<double> 
   study.runs_here = runs_in(file);
   study.level = level;
   study.within = margin_of(file, within);
-  study.looks = looks_in(file.study_text(), file.study_runs());
+  study.runs_at_analyses = interim_analyses_in(file.study_text(), file.study_runs());
   study.times = file.scan_times();
   for (const std::uint32_t scan : file.description().joint_scans) {
     study.joint_times.push_back(study.times[scan]);

@@ -44,7 +44,7 @@ struct StudyAnalysis {
   double level = kUsualLevel;    ///< level of all NEES bounds and tests
   double within = kUsualMargin;  ///< margin of consistent ratios (judge())
   /// {interim analysis} number of runs; empty if there is only one.
-  std::vector<std::uint64_t> looks;
+  std::vector<std::uint64_t> runs_at_analyses;
   double duration = 0.0;            ///< [s] time of the last scan
   std::vector<double> times;        ///< [s] {scan}
   std::vector<double> joint_times;  ///< [s] {scan with joint estimates}

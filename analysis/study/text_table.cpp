@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/study/text_table.hpp"
 
-#include "analysis/statistics/sums.hpp"
 #include "engine/errors.hpp"
 #include "engine/text/wrapped_text.hpp"
 
@@ -166,10 +165,16 @@ void TextTable::add(const std::vector<Entry>& row) {
   TableRow texts;
   for (const Entry& entry : row) {
     if (rows.empty()) headings.push_back({entry.heading, entry.align});
+    if (entry.tone != Tone::plain) tones[{rows.size(), texts.size()}] = entry.tone;
     texts.push_back(entry.text);
   }
   expect(texts.size() == headings.size(), "all rows of a table have the same columns");
   rows.push_back(std::move(texts));
+}
+
+Tone TextTable::tone_at(std::size_t row, std::size_t column) const {
+  const auto found = tones.find({row, column});
+  return found == tones.end() ? Tone::plain : found->second;
 }
 
 }  // namespace montecarta::analysis

@@ -2,13 +2,19 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <iosfwd>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace montecarta::analysis {
 
 enum class Align { left, right };
+
+/// Whether a text is good or bad news, which a page shows by its colour.
+enum class Tone : std::uint8_t { plain, good, bad };
 
 using TableRow = std::vector<std::string>;
 
@@ -23,13 +29,17 @@ struct TextTable {
     std::string heading;
     std::string text;
     Align align = Align::right;
+    Tone tone = Tone::plain;
   };
   std::vector<Heading> headings = {};
   std::vector<TableRow> rows = {};
+  /// {row, column} The tones that are not plain.
+  std::map<std::pair<std::size_t, std::size_t>, Tone> tones = {};
   std::size_t keys = 1;  ///< number of first columns that identify a row
 
   /// Adds a row. All rows have the headings of the first one.
   void add(const std::vector<Entry>& row);
+  Tone tone_at(std::size_t row, std::size_t column) const;
 };
 
 /// Rows as text with their columns aligned, `gap` spaces between them, and each line indented by

@@ -80,7 +80,7 @@ constexpr std::size_t kComplete = 1;  // index of the column of complete runs
 
 /// Text of the complete runs: "40", or "32 of 200" if runs failed, are missing or were not needed.
 std::string complete_runs_text(const CellAnalysis& cell) {
-  const std::size_t all = cell.complete + cell.failures.size() + cell.missing + cell.spared;
+  const std::size_t all = cell.complete + cell.failures.size() + cell.missing + cell.not_needed;
   const std::string complete = std::to_string(cell.complete);
   return cell.complete == all ? complete : complete + " of " + std::to_string(all);
 }
@@ -149,21 +149,37 @@ std::string runs_in_words(const CellAnalysis& cell) {
   if (!cell.failures.empty()) words += std::to_string(cell.failures.size()) + " FAILED, ";
   if (cell.missing > 0) words += std::to_string(cell.missing) + " missing, ";
   words += std::to_string(cell.complete) + " complete";
-  if (cell.spared == 0 && cell.looks_planned == 0) return words;
+  if (cell.not_needed == 0 && cell.analyses_planned == 0) return words;
   const std::size_t made = cell.complete + cell.failures.size();
-  const std::string look =
-      ", look " + std::to_string(cell.looks_made) + " of " + std::to_string(cell.looks_planned);
-  if (cell.spared == 0) return words + look;
+  const std::string analysis = ", interim analysis " + std::to_string(cell.analyses_made) + " of " +
+                               std::to_string(cell.analyses_planned);
+  if (cell.not_needed == 0) return words + analysis;
   return words + ", stopped at " + std::to_string(made) + " of " +
-         std::to_string(made + cell.missing + cell.spared) + ": " +
-         (cell.looks_planned > 0 ? "verdict known" + look : "precise enough");
+         std::to_string(made + cell.missing + cell.not_needed) + ": " +
+         (cell.analyses_planned > 0 ? "verdict known" + analysis : "precise enough");
+}
+
+Tone tone_of(Answer answer) {
+  if (answer == Answer::consistent) return Tone::good;
+  return answer == Answer::optimistic || answer == Answer::inconsistent ? Tone::bad : Tone::plain;
+}
+
+Tone tone_of(const Verdict& verdict) {
+  if (verdict.beside.repeated_runs > 0) return Tone::plain;
+  if (!verdict.beside.exact.empty()) return Tone::bad;
+  const bool is_slight = verdict.answer != Answer::consistent && !verdict.is_refused;
+  return is_slight ? Tone::plain : tone_of(verdict.answer);
+}
+
+Tone tone_of_runs(const CellAnalysis& cell) {
+  return cell.failures.empty() ? Tone::plain : Tone::bad;
 }
 
 TextTable verdict_table(const StudyAnalysis& study) {
   return cell_table(study, [&](const CellAnalysis& cell) -> std::vector<TextTable::Entry> {
     const NeesResult* pose = tested_pose(cell);
-    return {{"runs", runs_in_words(cell), Align::left},
-            {"verdict", in_words(cell.verdict), Align::left},
+    return {{"runs", runs_in_words(cell), Align::left, tone_of_runs(cell)},
+            {"verdict", in_words(cell.verdict), Align::left, tone_of(cell.verdict)},
             {"NEES ratio [" + level_text(study.level) + "]", ratio_text(cell)},
             {"scans in band", pose == nullptr ? "-" : percent(pose->share_inside())}};
   });
@@ -237,10 +253,10 @@ std::vector<std::string> verdict_notes(const StudyAnalysis& study) {
     std::ranges::move(paragraphs("verdict", key, values), std::back_inserter(notes));
   };
   add("notes", {{"level", level_text(study.level)}});
-  if (study.looks.size() > 1) {
-    add("looks", {{"looks", std::to_string(study.looks.size())},
-                  {"first", std::to_string(study.looks[0])},
-                  {"error", level_text(1.0 - study.level)}});
+  if (study.runs_at_analyses.size() > 1) {
+    add("interim analyses", {{"analyses", std::to_string(study.runs_at_analyses.size())},
+                             {"first", std::to_string(study.runs_at_analyses[0])},
+                             {"error", level_text(1.0 - study.level)}});
   }
   return notes;
 }
@@ -295,13 +311,14 @@ TextTable summary_table(const StudyAnalysis& study) {
   TextTable table =
       cell_table(study, [&](const CellAnalysis& cell) -> std::vector<TextTable::Entry> {
         const auto mean = [&](const char* score) { return cell.over_runs(score).mean; };
-        return {{"complete", complete_runs_text(cell)},
-                {"verdict", name_of(cell.verdict.answer), Align::left},
-                {"NEES ratio [" + level_text(study.level) + "]", ratio_text(cell)},
-                {"RMSE [m]", readable(mean("position_rmse"))},
-                {"RMSE [deg]", readable(180.0 / kPi * mean("heading_rmse"))},
-                {"ancestors", ancestors_text(cell)},
-                {"CPU/run [s]", readable(mean("cpu_seconds"), 2)}};
+        return {
+            {"complete", complete_runs_text(cell)},
+            {"verdict", name_of(cell.verdict.answer), Align::left, tone_of(cell.verdict.answer)},
+            {"NEES ratio [" + level_text(study.level) + "]", ratio_text(cell)},
+            {"RMSE [m]", readable(mean("position_rmse"))},
+            {"RMSE [deg]", readable(180.0 / kPi * mean("heading_rmse"))},
+            {"ancestors", ancestors_text(cell)},
+            {"CPU/run [s]", readable(mean("cpu_seconds"), 2)}};
       });
   for (std::size_t c = table.headings.size() - 1; c > kComplete; --c) leave_out(c, "-", table);
   leave_out(kComplete, std::to_string(study.runs_here), table);

@@ -66,6 +66,13 @@ std::vector<std::string> cautions(std::span<const CellAnalysis> cells,
 /// The runs of a cell in words: "40 complete", "2 FAILED, 38 complete", ...
 std::string runs_in_words(const CellAnalysis& cell);
 
+/// Consistent is good news; optimistic and inconsistent are bad news.
+Tone tone_of(Answer answer);
+/// The same, except that a slight deviation is neither.
+Tone tone_of(const Verdict& verdict);
+/// Failed runs are bad news.
+Tone tone_of_runs(const CellAnalysis& cell);
+
 std::string name_of(ErrorBlock block);
 
 std::string name_of(Moments moments);

@@ -19,7 +19,7 @@ constexpr double kFewestEffective = 3.0;
 
 /// Means over runs on one drive: the interval of each run is valid, and the runs are not
 /// independent.
-CorrelatedAverage mean_over_drives(std::span<const DriveScores> runs, std::size_t block) {
+CorrelatedAverage mean_over_runs(std::span<const DriveScores> runs, std::size_t block) {
   const auto is_judged = [&](const DriveScores& run) {
     return run.blocks[block].effective_samples > 0.0;
   };
@@ -43,7 +43,7 @@ DriveScores mean_scores(std::span<const DriveScores> runs) {
   DriveScores all = runs.front();
   all.median = 0.0;
   for (std::size_t block = 0; block < all.blocks.size(); ++block) {
-    all.blocks[block] = mean_over_drives(runs, block);
+    all.blocks[block] = mean_over_runs(runs, block);
   }
   for (const DriveScores& run : runs) {
     all.median += run.median / static_cast<double>(runs.size());

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "analysis/run/drive_scores.hpp"
-#include "analysis/run/study_facts.hpp"
 #include "analysis/verdict/verdict.hpp"
+#include "engine/core/judgement.hpp"
 
 #include <cstddef>
 #include <span>
@@ -17,7 +17,9 @@ namespace montecarta::analysis {
 struct DriveConsistency {
   Answer answer = Answer::untested;
   double within = kUsualMargin;
-  DriveScores mean;        ///< means over runs; counts and flags are the largest of any run
+  /// Means over runs. in_gaps and undefined are the largest of any run, fixes the smallest, and a
+  /// flag is set if any run has it.
+  DriveScores mean;
   double minutes = 0.0;    ///< length of such a drive that decides the verdict; may be infinite
   std::size_t drives = 0;  ///< number of drives judged; 0 if all runs process one drive
 };
@@ -30,8 +32,8 @@ DriveConsistency judge_drive(std::span<const DriveScores> runs, double level, do
 /// counts are sums. Drives without a fix that can be judged are left out.
 DriveConsistency judge_own_drives(std::span<const DriveScores> runs, double level, double within);
 
-/// The verdict in words: "consistent within 1.1", "optimistic by 1.3 to 2.1", "this drive cannot
-/// tell: it would need 40 minutes", ...
+/// The verdict in words: "consistent within 1.1", "optimistic: NEES 1.3 to 2.1 times too large",
+/// "this drive cannot tell: it would need 40 minutes", ...
 std::string in_words(const DriveConsistency& drive);
 
 }  // namespace montecarta::analysis

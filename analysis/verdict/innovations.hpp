@@ -51,8 +51,9 @@ struct Innovations {
   /// NIS over degrees of freedom: that of the verdict if it judges the size, else that of all runs
   /// and scans together.
   double ratio = kNaN;
-  /// Verdict on size, stretches and scans if the innovations are white. If they are not, it is on
-  /// the size by the means of runs, or untested for fewer than kFewestRunsOfSize runs.
+  /// Verdict on size, stretches and scans unless the innovations are shown not to be white. If they
+  /// are, it is on the size by the means of runs, or untested for fewer than kFewestRunsOfSize
+  /// runs.
   Verdict verdict;
   /// {lag - 1} autocorrelation of the NIS over all runs; NaN if not tested.
   std::vector<double> autocorrelation;

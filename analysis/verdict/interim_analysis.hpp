@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/run/study_facts.hpp"
 #include "analysis/verdict/verdict.hpp"
 #include "analysis/verdict/whole_error.hpp"
+#include "engine/core/judgement.hpp"
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 namespace montecarta::analysis {
@@ -16,7 +15,7 @@ struct InterimAnalysis {
   double level = kUsualLevel;    ///< level of all interim analyses together
   double within = kUsualMargin;  ///< margin of the verdict
   /// {interim analysis} number of runs; empty if there is only one.
-  std::vector<std::uint64_t> looks = {};
+  std::vector<std::uint64_t> runs_at_analyses = {};
   /// Share of the study's runs that are judged: less than 1 in a shard.
   double share_of_runs = 1.0;
 };

@@ -2,11 +2,11 @@
 #pragma once
 
 #include "analysis/run/joint_scores.hpp"
-#include "analysis/run/study_facts.hpp"
 #include "analysis/statistics/interval.hpp"
 #include "analysis/statistics/sums.hpp"
 #include "analysis/verdict/summed_error.hpp"
 #include "analysis/verdict/verdict.hpp"
+#include "engine/core/judgement.hpp"
 
 #include <cstdint>
 #include <span>

@@ -7,8 +7,13 @@
 #include "engine/text/number_text.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <optional>
+#include <tuple>
+#include <vector>
 
 namespace montecarta::analysis {
 namespace {
@@ -46,30 +51,23 @@ const Interval& shown_interval(const Member& member) {
   return std::isnan(member.shown.lower) ? member.simultaneous : member.shown;
 }
 
-/// Whether a ratio is shown to be outside [1/r, r] of the margin r.
-bool is_beyond(const Member& member, double margin) {
-  const Interval& ratio = shown_interval(member);
-  return ratio.lower > margin || ratio.upper < 1.0 / margin;
-}
-
-bool is_within(const Interval& ratio, double margin) {
-  return ratio.lower >= 1.0 / margin && ratio.upper <= margin;
-}
-
-/// The member that a sentence names for a direction: the size if it is shown, else the shown member
-/// with the least p-value among other ratios; a single scan only if nothing else is shown. If the
-/// size lies within the margin, another member is named that is shown to be beyond it.
+/// The member that a sentence names for a direction, of those that are shown: one that is beyond
+/// the margin before one that is not, a single scan last, the size first, then by the least
+/// p-value. The size counts as beyond the margin unless it is shown to lie within.
 std::optional<ShownMember> leading(const Verdict& verdict, Side direction) {
+  const auto rank = [&](const ShownMember& one) {
+    const Family family = one.test->family;
+    const bool is_size = family == Family::size;
+    const bool is_decisive = is_size ? !is_within_margin(family, *one.member, verdict.within)
+                                     : is_beyond_margin(family, *one.member, verdict.within);
+    return std::tuple(is_decisive, family != Family::scan, is_size, -one.member->p);
+  };
   std::optional<ShownMember> best;
   for (const FamilyTest& test : verdict.families) {
-    const bool is_size = best && best->test->family == Family::size &&
-                         !is_within(best->member->interval, verdict.within);
-    if (!is_ratio(test.family) || is_size || (best && test.family == Family::scan)) continue;
+    if (!is_ratio(test.family)) continue;
     for (const Member* member : shown_in(&test, direction)) {
-      const bool is_replaced = best && best->test->family == Family::size
-                                   ? is_beyond(*member, verdict.within)
-                                   : !best || member->p < best->member->p;
-      if (is_replaced) best = ShownMember{&test, member};
+      const ShownMember one{&test, member};
+      if (!best || rank(one) > rank(*best)) best = one;
     }
   }
   return best;
@@ -283,9 +281,9 @@ std::string ratio_sentence(const Verdict& verdict, Side direction) {
   const std::string factor = factor_text(*shown, direction);
   const std::string than = is_above ? " times what it claims" : " times smaller than it claims";
   const std::string place = place_of(*shown);
-  if (!place.empty()) return "its squared errors" + place + " are " + factor + than;
   const double ratio = shown->member->estimate;
-  if (ratio == 0.0) return "its errors are exactly 0 in all runs";
+  if (ratio == 0.0) return "its errors" + place + " are all exactly 0";
+  if (!place.empty()) return "its squared errors" + place + " are " + factor + than;
   const std::string time = when(verdict, direction);
   return "on average its squared errors are " + compact(is_above ? ratio : 1.0 / ratio) + than +
          " (" + level_text(verdict.level) + ": " + factor + ")" +

@@ -5,14 +5,11 @@
 #include "analysis/statistics/interval.hpp"
 #include "analysis/statistics/paired_tests.hpp"
 #include "engine/errors.hpp"
-#include "engine/runs/monte_carlo.hpp"
 #include "engine/text/number_text.hpp"
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
-#include <sstream>
 #include <utility>
 
 namespace montecarta::analysis {
@@ -133,10 +130,18 @@ Interval margin_of(Family family, double within) {
   return {-most, most};
 }
 
+}  // namespace
+
 bool is_beyond_margin(Family family, const Member& member, double within) {
   return claim_of(family) != Deviation::none &&
          is_outside(member.simultaneous, margin_of(family, within));
 }
+
+bool is_within_margin(Family family, const Member& member, double within) {
+  return is_inside(member.interval, margin_of(family, within));
+}
+
+namespace {
 
 template <class Predicate>
 bool is_any_member(const Verdict& verdict, const Predicate& predicate) {
@@ -149,7 +154,7 @@ bool is_any_member(const Verdict& verdict, const Predicate& predicate) {
 bool is_within_margin(const Verdict& verdict) {
   const auto spoils = [&](Family family, const Member& member) {
     const bool is_proved = claim_of(family) != Deviation::is_inside ||
-                           is_inside(member.interval, margin_of(family, verdict.within));
+                           is_within_margin(family, member, verdict.within);
     return !is_proved || is_beyond_margin(family, member, verdict.within);
   };
   return verdict.find(Family::size) != nullptr && !is_any_member(verdict, spoils);

@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/run/study_facts.hpp"
 #include "analysis/statistics/interval.hpp"
 #include "analysis/statistics/spread.hpp"
 #include "analysis/verdict/bets.hpp"
+#include "engine/core/judgement.hpp"
 
 #include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
-#include <span>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -108,8 +106,16 @@ struct MemberTest {
 /// `level`.
 std::vector<FamilyTest> judge_tests(std::vector<MemberTest> tests, double level);
 
+/// Returns whether the value of a member is shown to be beyond the margin `within`, with all
+/// members of all families together.
+bool is_beyond_margin(Family family, const Member& member, double within);
+/// Returns whether the interval of the member alone lies within the margin.
+bool is_within_margin(Family family, const Member& member, double within);
+
 enum class Answer {
-  untested,      ///< no covariance is stored, or no run is complete
+  /// Nothing can be judged: no covariance, no complete run, too few draws, or runs that repeat each
+  /// other.
+  untested,
   consistent,    ///< every deviation is shown to be within the margin
   optimistic,    ///< squared errors are shown to be larger than claimed
   conservative,  ///< squared errors are shown to be smaller than claimed
@@ -184,7 +190,8 @@ struct Allowance {
   std::uint64_t unusable = 0;  ///< number of unusable samples
 };
 
-/// Decides by the verdict. Throws StudyError if nothing was judged and nothing failed.
+/// Decides by the verdict. Throws StudyError if runs repeat each other, or if nothing
+/// was judged and the failures are within `allowed`.
 GateAnswer gate(const Verdict& verdict, const Allowance& allowed = {});
 
 }  // namespace montecarta::analysis

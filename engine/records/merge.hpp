@@ -11,9 +11,9 @@ namespace montecarta::engine {
 
 /// Merges shards to one self-contained file of all runs of a study. Every run is checked by its
 /// fingerprints and copied unchanged. Memory does not grow with the number of runs. `out` gets its
-/// name only when it is complete. Throws StudyError and writes nothing if a shard is of another
-/// study, runs in two shards differ, or runs are missing. Throws RunError if a shard is damaged or
-/// the disk fails.
+/// name only when it is complete. Throws StudyError if a shard is of another study or damaged,
+/// if runs in two shards differ, or if runs are missing; RunError if the disk fails. `out` does not
+/// exist then.
 MergeSummary merge_results(const std::filesystem::path& out,
                            const std::vector<std::filesystem::path>& shards, Existing existing);
 

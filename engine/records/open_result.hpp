@@ -38,14 +38,6 @@ using Fill = std::function<void(const PosixFile&, const ResultSlabs&)>;
 std::uint64_t write_at_once(const std::filesystem::path& path, const ResultDescription& description,
                             const Fill& fill, Existing existing);
 
-/// The reason why `b`, which describes the file `path`, is not of the same study and layout as `a`,
-/// worded "place: problem (why): remedy"; nullopt if it is. Their runs may differ.
-std::optional<std::string> difference(const ResultDescription& a, const ResultDescription& b,
-                                      const std::filesystem::path& path);
-
-/// Differences between two builds, worded for the user; empty if both round alike.
-std::vector<std::string> build_differences(const TextPairs& a, const TextPairs& b);
-
 /// Opens the result of a plan as ResultWriter::create(), resume() and attempt() say.
 OpenResult create_result(const std::filesystem::path& path, const StudyPlan& plan,
                          const TextPairs& provenance, Existing existing);

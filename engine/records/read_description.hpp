@@ -9,7 +9,7 @@
 namespace montecarta::engine {
 
 /// Reads the description of an open result file. Throws StudyError if it is no montecarta result of
-/// a known major version, and RunError if a required part cannot be read or is inconsistent
+/// a known major version, or if a required part cannot be read or is inconsistent
 /// (check_description()).
 ResultDescription read_description(const h5::Handle& file, const std::filesystem::path& path);
 /// The same, of a file that is not open yet, after checking its seal.

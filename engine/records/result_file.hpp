@@ -23,7 +23,8 @@ struct SumGroup;
 /// A result file that is opened for reading, the input of all analyses. Runs are read one by one,
 /// so that no more memory than the caller's buffer is needed. Any number of threads may call the
 /// members that take the index of a run. Opens finished files and unfinished work (OUT.h5.part).
-/// Every member throws StudyError with file and dataset if the file cannot be read.
+/// Members throw StudyError with file and dataset if the file is damaged, and RunError if the disk
+/// fails or a column is not stored.
 class ResultFile {
  public:
   /// Opens a file. Throws StudyError if `path` does not exist, is no HDF5 file, or is no montecarta

@@ -58,7 +58,7 @@ std::vector<RunStatus> read_statuses(const PosixFile& file, const CellSlabs& cel
 RunStatus status_of(const PosixFile& file, const CellSlabs& cell, std::size_t run_index);
 
 /// Returns whether the fingerprint stored with a run matches its bytes. `buffer` is used for the
-/// longest column. A run that is missing or spared must have no fingerprint.
+/// longest column. A run that is missing or not needed must have no fingerprint.
 bool run_is_whole(const PosixFile& file, const CellSlabs& cell, std::size_t run_index,
                   std::vector<std::byte>& buffer);
 /// Returns whether the fingerprint of the true path of a run matches; false if it is missing, true

@@ -392,7 +392,7 @@ void add_own_scale(const h5::Handle& group, const StoredCell& cell, Axis axis,
 
 void add_bookkeeping(const h5::Handle& group, std::size_t runs, const Scales& scales) {
   const auto status = add_dataset(group, "status", Element::u8, {runs}, {"run"},
-                                  {"1", "0 missing, 1 complete, 2 failed, 3 spared"}, scales);
+                                  {"1", "0 missing, 1 complete, 2 failed, 3 not needed"}, scales);
   write_zeros(status, Element::u8, runs);
   add_dataset(group, "failure_reason", Element::u8, {runs, kFailureReasonBytes},
               {"run", "character"}, {"1", "why a failed run ended: UTF-8 text, zeros behind it"},

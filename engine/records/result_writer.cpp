@@ -115,10 +115,10 @@ void ResultWriter::write(std::size_t cell, std::size_t run_index, const RunRecor
 }
 
 void ResultWriter::spare(std::size_t cell, std::size_t run_index) {
-  expect(status(cell, run_index) == RunStatus::missing, "a run was spared that is there");
-  const RunStatus spared = RunStatus::spared;
-  result_.file.write_at(result_.slabs.cells[cell].status.at(run_index), bytes_of(spared));
-  status_[cell][run_index].store(spared, std::memory_order_release);
+  expect(status(cell, run_index) == RunStatus::missing, "a run that is there is not needed");
+  const RunStatus not_needed = RunStatus::not_needed;
+  result_.file.write_at(result_.slabs.cells[cell].status.at(run_index), bytes_of(not_needed));
+  status_[cell][run_index].store(not_needed, std::memory_order_release);
 }
 
 void ResultWriter::note_wall_seconds(double seconds) {

@@ -26,8 +26,6 @@ namespace montecarta::engine {
 /// if the disk fails.
 class ResultWriter {
  public:
-  // The following three functions are defined in open_result.cpp.
-
   /// Lays out a new file. `existing` also applies to an unfinished OUT.h5.part. An OUT.h5 that is
   /// to be replaced stays unchanged until finish(). `provenance` is stored as attributes of
   /// /provenance.

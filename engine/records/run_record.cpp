@@ -171,7 +171,7 @@ void RunRecord::expect_element(const Column& column, std::size_t size) {
 }
 
 void require_known(std::span<const RunStatus> statuses, const std::string& place) {
-  if (std::ranges::all_of(statuses, [](RunStatus s) { return s <= RunStatus::spared; })) return;
+  if (std::ranges::all_of(statuses, [](RunStatus s) { return s <= RunStatus::not_needed; })) return;
   throw StudyError(place + ": a status is none of 0, 1, 2, 3 (the file is damaged): make it anew");
 }
 

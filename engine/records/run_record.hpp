@@ -69,9 +69,9 @@ class RecordLayout {
 /// One layout for each cell of the plan.
 std::vector<RecordLayout> layouts_of(const StudyPlan& plan, Detail detail);
 
-/// State of one run of one cell, with the numbers of the file's `status`. A spared run was not
-/// made, because the runs before it were enough.
-enum class RunStatus : std::uint8_t { missing = 0, complete = 1, failed = 2, spared = 3 };
+/// State of one run of one cell, with the numbers of the file's `status`. A run that is not needed
+/// was not made, because the runs before it were enough.
+enum class RunStatus : std::uint8_t { missing = 0, complete = 1, failed = 2, not_needed = 3 };
 
 /// Returns whether a run with that status has a stored record.
 inline bool is_stored(RunStatus status) {

@@ -117,10 +117,10 @@ void require_equal(const Shard& a, const Shard& b, std::uint64_t run) {
 
 void require_whole(const PosixFile& file, const Shard& shard, std::uint64_t run,
                    std::vector<std::byte>& buffer) {
-  const auto spared = [&](const CellSlabs& cell) {
-    return status_of(file, cell, shard.index(run)) == RunStatus::spared;
+  const auto not_needed = [&](const CellSlabs& cell) {
+    return status_of(file, cell, shard.index(run)) == RunStatus::not_needed;
   };
-  bool whole = std::ranges::all_of(shard.slabs.cells, spared) ||
+  bool whole = std::ranges::all_of(shard.slabs.cells, not_needed) ||
                truth_is_whole(file, shard.slabs, shard.index(run), buffer);
   for (const CellSlabs& cell : shard.slabs.cells)
     whole = whole && run_is_whole(file, cell, shard.index(run), buffer);

@@ -29,15 +29,15 @@ std::vector<std::uint64_t> rounds_of(std::uint64_t runs) {
 namespace {
 
 /// Spares the missing runs of a cell from `first` on, and returns their number.
-std::uint64_t spare_rest(std::size_t cell, std::uint64_t first, std::uint64_t last,
-                         ResultWriter& writer) {
-  std::uint64_t spared = 0;
+std::uint64_t mark_not_needed(std::size_t cell, std::uint64_t first, std::uint64_t last,
+                              ResultWriter& writer) {
+  std::uint64_t not_needed = 0;
   for (std::uint64_t run = first; run < last; ++run) {
     if (writer.status(cell, run) != RunStatus::missing) continue;
     writer.spare(cell, run);
-    ++spared;
+    ++not_needed;
   }
-  return spared;
+  return not_needed;
 }
 
 /// Called between rounds, when the first `runs` runs of every cell have ended. Spares the later
@@ -45,15 +45,15 @@ std::uint64_t spare_rest(std::size_t cell, std::uint64_t first, std::uint64_t la
 /// meanwhile, a later session decides the same, because only the first `runs` runs count.
 std::uint64_t spare_what_is_enough(const StudyPlan& plan, std::uint64_t runs,
                                    const Parallel& parallel, ResultWriter& writer) {
-  std::uint64_t spared = 0;
+  std::uint64_t not_needed = 0;
   for (std::size_t cell = 0; cell < plan.cells.size(); ++cell) {
-    // An earlier session may have decided this, and been stopped before it had spared all runs.
-    const bool known = writer.status(cell, runs) == RunStatus::spared;
+    // An earlier session may have decided this, and been stopped before it had marked all runs.
+    const bool known = writer.status(cell, runs) == RunStatus::not_needed;
     if (known || plan.is_enough(writer.unfinished(), cell, runs, parallel)) {
-      spared += spare_rest(cell, runs, plan.runs_here(), writer);
+      not_needed += mark_not_needed(cell, runs, plan.runs_here(), writer);
     }
   }
-  return spared;
+  return not_needed;
 }
 
 constexpr int kSomeRunsFailed = 3;
@@ -109,7 +109,7 @@ void run_missing(const StudyPlan& plan, const RunOptions& options, ResultWriter&
     options.parallel.for_each(n_workers, [&](std::size_t) { run_worker(session); });
     if (stop.is_set()) return;
     if (runs == plan.runs_here()) return;
-    progress.runs_ended(RunStatus::spared,
+    progress.runs_ended(RunStatus::not_needed,
                         spare_what_is_enough(plan, runs, options.parallel, writer));
   }
 }

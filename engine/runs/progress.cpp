@@ -37,12 +37,12 @@ void RunCounts::add(RunStatus status, std::uint64_t runs) {
   (status == RunStatus::complete  ? complete
    : status == RunStatus::failed  ? failed
    : status == RunStatus::missing ? missing
-                                  : spared) += runs;
+                                  : not_needed) += runs;
 }
 
 RunCounts& RunCounts::operator+=(const RunCounts& other) {
   complete += other.complete, failed += other.failed;
-  missing += other.missing, spared += other.spared;
+  missing += other.missing, not_needed += other.not_needed;
   return *this;
 }
 

@@ -28,7 +28,7 @@ class Stopwatch {
 
 /// Numbers of runs in each state. A run is counted once for every cell.
 struct RunCounts {
-  std::uint64_t complete = 0, failed = 0, missing = 0, spared = 0;
+  std::uint64_t complete = 0, failed = 0, missing = 0, not_needed = 0;
 
   std::uint64_t ended() const { return complete + failed; }
   /// Number of runs that are needed.

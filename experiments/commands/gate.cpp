@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/render/page/html.hpp"
-#include "analysis/run/study_facts.hpp"
 #include "analysis/study/study_analysis.hpp"
 #include "analysis/verdict/sentence.hpp"
 #include "analysis/verdict/verdict.hpp"
+#include "engine/core/judgement.hpp"
 #include "engine/errors.hpp"
 #include "engine/text/wrapped_text.hpp"
 #include "experiments/commands/arguments.hpp"

@@ -50,13 +50,13 @@ void print_study(const ResultFile& file) {
 }
 
 void print_cells(const ResultFile& file) {
-  std::vector<TableRow> rows{{"cell", "complete", "failed", "missing", "spared"}};
+  std::vector<TableRow> rows{{"cell", "complete", "failed", "missing", "not needed"}};
   for (const StoredCell& cell : file.cells()) {
     const RunCounts counts = count_status(file, cell);
     rows.push_back({cell.label, std::to_string(counts.complete), std::to_string(counts.failed),
-                    std::to_string(counts.missing), std::to_string(counts.spared)});
+                    std::to_string(counts.missing), std::to_string(counts.not_needed)});
   }
-  std::cout << "\ncells\n" << aligned(without_idle_spared(std::move(rows)));
+  std::cout << "\ncells\n" << aligned(without_idle_not_needed(std::move(rows)));
 }
 
 struct Dataset {

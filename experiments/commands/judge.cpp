@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/render/tables/terminal.hpp"
-#include "analysis/run/study_facts.hpp"
 #include "analysis/study/study_analysis.hpp"
 #include "analysis/verdict/verdict.hpp"
+#include "engine/core/judgement.hpp"
 #include "engine/errors.hpp"
 #include "engine/records/result_file.hpp"
 #include "engine/text/wrapped_text.hpp"

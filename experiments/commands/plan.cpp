@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/run/study_facts.hpp"
 #include "analysis/statistics/nees_bounds.hpp"
 #include "analysis/study/text_table.hpp"
+#include "engine/core/judgement.hpp"
 #include "engine/text/number_text.hpp"
 #include "engine/text/wrapped_text.hpp"
 #include "experiments/commands/commands.hpp"

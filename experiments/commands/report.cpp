@@ -2,7 +2,7 @@
 #include "analysis/render/report.hpp"
 
 #include "analysis/render/figures/gnuplot.hpp"
-#include "analysis/run/study_facts.hpp"
+#include "engine/core/judgement.hpp"
 #include "experiments/commands/arguments.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/stored_result.hpp"

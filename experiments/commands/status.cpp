@@ -54,14 +54,14 @@ void add(const ResultFile& file, StudyStatus& study) {
 }
 
 void print(const StudyStatus& study) {
-  std::vector<TableRow> rows{{"cell", "complete", "failed", "missing", "all", "spared"}};
+  std::vector<TableRow> rows{{"cell", "complete", "failed", "missing", "all", "not needed"}};
   for (std::size_t c = 0; c < study.labels.size(); ++c) {
     const RunCounts counts = count_status(study.runs[c]);
     rows.push_back({study.labels[c], std::to_string(counts.complete), std::to_string(counts.failed),
                     std::to_string(counts.missing), std::to_string(study.runs[c].size()),
-                    std::to_string(counts.spared)});
+                    std::to_string(counts.not_needed)});
   }
-  std::cout << aligned(without_idle_spared(std::move(rows)), 0);
+  std::cout << aligned(without_idle_not_needed(std::move(rows)), 0);
 }
 
 /// The depth of the check of a file.

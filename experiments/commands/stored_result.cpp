@@ -46,9 +46,9 @@ RunCounts count_status(const ResultFile& file, const StoredCell& cell) {
   return counts;
 }
 
-std::vector<TableRow> without_idle_spared(std::vector<TableRow> rows) {
+std::vector<TableRow> without_idle_not_needed(std::vector<TableRow> rows) {
   const auto is_idle = [](const TableRow& row) {
-    return row.back() == "0" || row.back() == "spared";
+    return row.back() == "0" || row.back() == "not needed";
   };
   if (!std::ranges::all_of(rows, is_idle)) return rows;
   for (TableRow& row : rows) row.pop_back();

@@ -23,8 +23,8 @@ RunCounts count_status(const std::vector<RunStatus>& status);
 /// The runs of a cell in rows or in sums.
 RunCounts count_status(const ResultFile& file, const StoredCell& cell);
 
-/// Removes the last column of a table, which counts spared runs, if no cell has any.
-std::vector<TableRow> without_idle_spared(std::vector<TableRow> rows);
+/// Removes the last column of a table, which counts runs that are not needed, if no cell has any.
+std::vector<TableRow> without_idle_not_needed(std::vector<TableRow> rows);
 
 /// The study that a result file holds, with its recorded drive read from --data or
 /// $MONTECARTA_DATA. Warns on standard error if this build may round differently from the one that

@@ -6,8 +6,10 @@
 #include "engine/errors.hpp"
 #include "engine/records/result_file.hpp"
 #include "engine/runs/monte_carlo.hpp"
+#include "engine/text/number_text.hpp"
 #include "experiments/text/words.hpp"
 
+#include <algorithm>
 #include <filesystem>
 
 namespace montecarta::experiments {
@@ -56,13 +58,14 @@ std::string in_words(const StoppingRule& rule, std::uint64_t runs) {
                              std::to_string(4 * kFirstRound) + ", ... runs when ";
   if (!rule.metric) {
     return rounds + "its verdict is known, by intervals widened for up to " +
-           std::to_string(rounds_of(runs).size()) + " interim analyses, after " +
+           std::to_string(rounds_of(runs).size()) + " interim analyses, \"consistent\" after " +
+           std::to_string(std::min(rule.least_runs, runs)) + " runs at the earliest, after " +
            std::to_string(runs) + " runs in any case; failed runs do not count";
   }
   const std::string units = score_called(*rule.metric, "study.until").units;
-  return rounds + "the 95 % interval of its mean " + *rule.metric + " is within +- " +
-         to_text(rule.half_width) + (units == "1" ? "" : " " + units) + ", after " +
-         std::to_string(runs) +
+  return rounds + "the " + level_text(StoppingRule::kLevel) + " interval of its mean " +
+         *rule.metric + " is within +- " + to_text(rule.half_width) +
+         (units == "1" ? "" : " " + units) + ", after " + std::to_string(runs) +
          " runs in any case; failed runs do not count, and values with a heavy tail are never "
          "precise";
 }

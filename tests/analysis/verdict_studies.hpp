@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/run/study_facts.hpp"
 #include "analysis/run/whitened_run.hpp"
 #include "analysis/verdict/verdict.hpp"
 #include "analysis/verdict/whole_error.hpp"
+#include "engine/core/judgement.hpp"
 #include "engine/random/stream.hpp"
 #include "tests/analysis/synthetic_runs.hpp"
 

@@ -65,7 +65,7 @@ inline void flip_bit(const std::filesystem::path& path, std::uint64_t at) {
   const PosixFile file(path, PosixFile::Mode::write);
   std::byte stored{};
   file.read_at(at, std::span(&stored, 1));
-  stored ^= std::byte{2};  // turns the status "complete" into "spared"
+  stored ^= std::byte{2};  // turns the status "complete" into "not needed"
   file.write_at(at, std::span(&stored, 1));
 }
 

@@ -103,17 +103,14 @@ constexpr const char* kNoNetwork =
     "style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:\">\n"
     "<link rel=\"icon\" href=\"data:,\">\n";
 
-/// The CSS class that colours verdicts and failures; without the colour the word itself says the
-/// same.
-std::string class_of(const std::string& text, Align align) {
+/// The CSS class by which a text is aligned and coloured. The word itself says the same without the
+/// colour.
+std::string class_of(const std::string& text, Align align, Tone tone) {
   // [characters] longer texts are broken into lines on a narrow page.
   constexpr std::size_t kLong = 24;
   std::string names = align == Align::right ? "right" : text.size() > kLong ? "long" : "";
-  const bool bad = text.starts_with("optimistic") || text.starts_with("inconsistent") ||
-                   text.starts_with("better in no") || text.find("FAILED") != std::string::npos;
-  if (bad) names += " bad";
-  const bool good = text.starts_with("consistent within") || text.starts_with("better in every");
-  if (good) names += " good";
+  if (tone == Tone::bad) names += " bad";
+  if (tone == Tone::good) names += " good";
   return names.empty() ? "" : " class=\"" + names + "\"";
 }
 
@@ -181,11 +178,12 @@ std::string html_table(const TextTable& table) {
             html_escape(heading.text) + "</th>";
   }
   html += "</tr></thead>\n<tbody>\n";
-  for (const auto& row : table.rows) {
+  for (std::size_t r = 0; r < table.rows.size(); ++r) {
     html += "<tr>";
-    for (std::size_t c = 0; c < row.size(); ++c) {
-      html +=
-          "<td" + class_of(row[c], table.headings[c].align) + ">" + html_escape(row[c]) + "</td>";
+    for (std::size_t c = 0; c < table.rows[r].size(); ++c) {
+      const std::string& text = table.rows[r][c];
+      html += "<td" + class_of(text, table.headings[c].align, table.tone_at(r, c)) + ">" +
+              html_escape(text) + "</td>";
     }
     html += "</tr>\n";
   }

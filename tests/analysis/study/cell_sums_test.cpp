@@ -193,6 +193,22 @@ TEST(CellSums, LeavesOutAndCountsARunWithoutAJudgedScan) {
             "Runs without a scan that can be judged: kf 1 of 12.");
 }
 
+TEST(Tones, AreBadOfWhatIsShownBeyondTheMarginOrFailed) {
+  Verdict verdict;
+  verdict.answer = Answer::optimistic;
+  EXPECT_EQ(tone_of(verdict), Tone::plain) << "slightly optimistic";
+  verdict.is_refused = true;
+  EXPECT_EQ(tone_of(verdict), Tone::bad);
+  verdict.beside.repeated_runs = 1;
+  EXPECT_EQ(tone_of(verdict), Tone::plain) << "not tested";
+  EXPECT_EQ(tone_of(Answer::consistent), Tone::good);
+  EXPECT_EQ(tone_of(Answer::undecided), Tone::plain);
+  CellAnalysis cell;
+  EXPECT_EQ(tone_of_runs(cell), Tone::plain);
+  cell.failures.push_back({.run = 3, .step = 0, .reason = "left the map"});
+  EXPECT_EQ(tone_of_runs(cell), Tone::bad);
+}
+
 TEST(Cautions, SayHowFewParticlesShowARatioOfTwo) {
   CellAnalysis cell;
   cell.label = "pf";

@@ -316,12 +316,12 @@ struct Stopped {
 
 Stopped stopped_study(const PlantedLaw& law, std::uint64_t study, double within) {
   constexpr std::size_t kScans = 20;
-  const InterimAnalysis analysis{.within = within, .looks = rounds_of(512)};
+  const InterimAnalysis analysis{.within = within, .runs_at_analyses = rounds_of(512)};
   const std::vector<std::string> components = letters(law.dimension);
   const std::vector<double> times = scan_times(kScans);
   WholeError sums(law.dimension, kScans);
   std::uint64_t runs = 0;
-  for (const std::uint64_t look : analysis.looks) {
+  for (const std::uint64_t look : analysis.runs_at_analyses) {
     add_runs(law, study, runs, look - runs, kScans, sums);
     runs = look;
     const Verdict found = judge(sums, {components, times}, analysis, runs, runs);

@@ -97,6 +97,22 @@ TEST(Judge, NeedsTheSizeForConsistencyAndTellsTheDirection) {
   EXPECT_EQ(components({0.4, 0.6}, {1.9, 2.1}).answer, Answer::inconsistent);
 }
 
+// The mean of all is off, but within the margin; heading and one scan are not.
+TEST(Sentence, LeadsWithWhatIsBeyondTheMargin) {
+  const FamilyTest whole = size({1.02, 1.06});
+  const FamilyTest components =
+      family(Family::component, {{"heading", {1.3, 1.6}}, {"forward", kRight}});
+  FamilyTest parts = stretches({{1.02, 1.05}, kRight});
+  parts.members[0].p = 1e-9;
+  EXPECT_THAT(sentence("x", judged({whole, components, parts})),
+              HasSubstr(": its squared errors in heading are 1.30 to 1.60 times what it claims"));
+  FamilyTest scan = family(Family::scan, {{"", {1.5, 2.0}}});
+  scan.members[0].from = scan.members[0].to = 3.0;
+  EXPECT_THAT(sentence("x", judged({whole, scan})),
+              HasSubstr(": its squared errors at 3.0 s are 1.50 to 2.00 times what it claims"));
+  EXPECT_THAT(sentence("x", judged({whole, parts})), HasSubstr("1.02 to 1.06"));
+}
+
 // Half the interval in logarithms is log 1.1. The estimate is right, and off by 0.6745 of 1.96
 // standard errors in half of all studies.
 TEST(Judge, SaysHowManyRunsDecide) {
@@ -193,7 +209,7 @@ TEST(Words, NameWhatIsOffWhereTheSizeIsRight) {
   EXPECT_EQ(words(family(Family::correlation, {{"a and b", {-0.6, -0.4}}})),
             "inconsistent: an unreported correlation of -0.60 to -0.40 between a and b");
   EXPECT_THAT(words(family(Family::between_runs, {{"runs", {0.3, 0.6}}})),
-              HasSubstr("scales of their own (standard deviation of 0.30 to 0.60)"));
+              HasSubstr("differ by a standard deviation of 0.30 to 0.60)"));
 }
 
 TEST(Words, ListEveryFamilyThatIsShown) {
@@ -302,12 +318,13 @@ TEST(Margin, IsThatOfTheStudyInTheFileOrRefused) {
 
 TEST(Looks, AreTheRoundsOfAStudyThatStopsByVerdictOnly) {
   const std::string text = "[study]\nname = a\nuntil = verdict\n[scenario]\n";
-  EXPECT_THAT(looks_in(text, 200), ElementsAre(32, 64, 128, 200));
-  EXPECT_THAT(looks_in(text, 20), ElementsAre(20));
-  EXPECT_THAT(looks_in("[study]\nuntil = verdict, 100 runs\n", 64), ElementsAre(32, 64));
-  EXPECT_THAT(looks_in("", 200), IsEmpty());
-  EXPECT_THAT(looks_in("[study]\nuntil = position_rmse < 1\n", 200), IsEmpty());
-  EXPECT_THAT(looks_in("[study]\nname = a\n[record]\nuntil = verdict\n", 200), IsEmpty());
+  EXPECT_THAT(interim_analyses_in(text, 200), ElementsAre(32, 64, 128, 200));
+  EXPECT_THAT(interim_analyses_in(text, 20), ElementsAre(20));
+  EXPECT_THAT(interim_analyses_in("[study]\nuntil = verdict, 100 runs\n", 64), ElementsAre(32, 64));
+  EXPECT_THAT(interim_analyses_in("", 200), IsEmpty());
+  EXPECT_THAT(interim_analyses_in("[study]\nuntil = position_rmse < 1\n", 200), IsEmpty());
+  EXPECT_THAT(interim_analyses_in("[study]\nname = a\n[record]\nuntil = verdict\n", 200),
+              IsEmpty());
 }
 
 }  // namespace

@@ -215,7 +215,7 @@ TEST(WholeError, NamesAComponentWhoseErrorsAreExactlyZero) {
   const Verdict found = verdict_of(sums, 3, kScansOfARun, 100, 1.8);
   EXPECT_EQ(found.find(Family::component)->members[2].estimate, 0.0);
   EXPECT_TRUE(found.is_refused);
-  EXPECT_THAT(sentence("a", found), HasSubstr("mainly in c"));
+  EXPECT_THAT(sentence("a", found), HasSubstr("its errors in c are all exactly 0"));
 }
 
 TEST(WholeError, ReportsErrorsOfComponentsThatAreClaimedToBeExact) {

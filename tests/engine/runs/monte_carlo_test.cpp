@@ -204,11 +204,11 @@ TEST_F(Rounds, SpareWhatIsEnough) {
   EXPECT_EQ(outcome.stopped, StopReason::complete);
   EXPECT_EQ(outcome.counts.complete, 63 + kRunsOfRounds);
   EXPECT_EQ(outcome.counts.failed, 1U);
-  EXPECT_EQ(outcome.counts.spared, kRunsOfRounds - 64);
+  EXPECT_EQ(outcome.counts.not_needed, kRunsOfRounds - 64);
   EXPECT_EQ(outcome.runs_here, 64 + kRunsOfRounds);
   const ResultFile file(folder / "study.h5");
   const std::vector<RunStatus> status = file.status(file.cells()[0]);
-  EXPECT_THAT(std::vector(status.begin() + 64, status.end()), Each(RunStatus::spared));
+  EXPECT_THAT(std::vector(status.begin() + 64, status.end()), Each(RunStatus::not_needed));
 }
 
 // A cell that stops has the first runs of one that does not.
@@ -244,8 +244,8 @@ TEST_F(Rounds, GiveTheSameBitsInterruptedAndResumed) {
   }
 }
 
-// The first cell has spared its runs when the question about the second fails: asked again later,
-// all comes out the same.
+// The first cell has marked its runs as not needed when the question about the second fails: asked
+// again later, all comes out the same.
 TEST_F(Rounds, GiveTheSameBitsAfterAnError) {
   const ResultFile whole = results_of(stopping_plan(), options("whole.h5"));
   RunOptions how = options("study.h5");

@@ -98,9 +98,9 @@ TEST_F(UntilVerdict, StopsACellWhenItIsKnownAndSaysAtWhichLook) {
   const std::string out = call({"analyze", "out.h5", "--table", "verdict"}).out;
   unsetenv("COLUMNS");
   EXPECT_THAT(out, ContainsRegex("too_sure +(32|64) complete, stopped at (32|64) of 500: verdict "
-                                 "known, look [12] of 5"));
+                                 "known, interim analysis [12] of 5"));
   EXPECT_THAT(out, ContainsRegex("right +500 complete.*consistent within 1.3"));
-  EXPECT_THAT(out, HasSubstr("error probability is spent over the looks"));
+  EXPECT_THAT(out, HasSubstr("error probability is spent over these"));
   EXPECT_EQ(call({"gate", "out.h5", "--cell", "right"}).code, 0);
   EXPECT_EQ(call({"gate", "out.h5", "--cell", "too_sure"}).code, 4);
 }

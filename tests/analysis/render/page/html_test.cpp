@@ -20,14 +20,16 @@ TEST(Html, EscapesText) {
   EXPECT_EQ(html_escape("a < b & \"c\" 3 +- 1"), "a &lt; b &amp; &quot;c&quot; 3 &plusmn; 1");
 }
 
-TEST(Html, ColoursWhatIsShownAndNothingElse) {
-  const auto row = [](const std::string& verdict) {
-    return html_table({.headings = {{"verdict", Align::left}}, .rows = {{verdict}}});
+TEST(Html, ColoursATextByItsToneAndNotByItsWords) {
+  const auto row = [](const std::string& text, Tone tone) {
+    TextTable table;
+    table.add({{"verdict", text, Align::left, tone}});
+    return html_table(table);
   };
-  EXPECT_THAT(row("consistent within 1.1"), testing::HasSubstr("good"));
-  EXPECT_THAT(row("optimistic: NEES 1.2 to 1.4 times too large"), testing::HasSubstr("bad"));
-  EXPECT_THAT(row("undecided"), testing::HasSubstr("<td>undecided"));
-  EXPECT_THAT(row("undecided: 12 more runs decide"), testing::HasSubstr("\"long\">undecided"));
+  EXPECT_THAT(row("consistent within 1.1", Tone::good), HasSubstr("good\">consistent"));
+  EXPECT_THAT(row("optimistic", Tone::bad), HasSubstr("bad\">optimistic"));
+  EXPECT_THAT(row("optimistic", Tone::plain), HasSubstr("<td>optimistic"));
+  EXPECT_THAT(row("undecided: 12 more runs decide", Tone::plain), HasSubstr("\"long\">undecided"));
 }
 
 TEST(Html, GivesEveryDrawingItsOwnIdentifiersAndTheColourOfTheText) {

@@ -75,10 +75,10 @@ TEST_F(ReadReplay, TellsOfALandmarkWhenItChanges) {
   const std::vector<ReplayMap> maps = read_replay(file, 1, {.frames = 1000}).cells[0].maps;
   ASSERT_FALSE(maps.empty());
   const StoredMap stored(file, file.cells()[0], 1);
-  std::vector<ReplayMap::Landmark> latest;
+  std::vector<ReplayMap::DrawnLandmark> latest;
   for (std::size_t f = 0, k = 0; f < file.scan_times().size(); ++f) {
     for (; k < maps.size() && maps[k].frame <= f; ++k) {
-      for (const ReplayMap::Landmark& landmark : maps[k].changed) {
+      for (const ReplayMap::DrawnLandmark& landmark : maps[k].changed) {
         std::erase_if(latest, [&](const auto& old) { return old.row == landmark.row; });
         latest.push_back(landmark);
       }

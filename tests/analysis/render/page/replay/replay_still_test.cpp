@@ -79,7 +79,7 @@ TEST_F(ReplayStill, EndsALineWhereItsNumbersEnd) {
 TEST_F(ReplayStill, LeavesOutALandmarkThatIsNoLongerInTheMap) {
   Replay replay = read_replay(file, 1);
   const std::size_t before = count_of("<ellipse", replay_still(replay));
-  ReplayMap::Landmark gone = replay.cells[0].maps.back().changed.front();
+  ReplayMap::DrawnLandmark gone = replay.cells[0].maps.back().changed.front();
   gone.ellipse.major = std::numeric_limits<double>::quiet_NaN();
   replay.cells[0].maps.push_back({replay.times.size() - 1, {gone}});
   EXPECT_LT(count_of("<ellipse", replay_still(replay)), before);
