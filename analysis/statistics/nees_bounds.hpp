@@ -2,11 +2,8 @@
 #pragma once
 
 #include "analysis/statistics/interval.hpp"
-#include "engine/core/judgement.hpp"
 
-#include <cstddef>
 #include <cstdint>
-#include <functional>
 
 namespace montecarta::analysis {
 
@@ -15,37 +12,5 @@ namespace montecarta::analysis {
 /// with (runs x dimension) degrees of freedom, and both tails are equal (STATISTICS 3). Throws
 /// StudyError if runs or dimension is 0 or level is not inside (0, 1).
 Interval nees_bounds(std::uint64_t runs, std::uint64_t dimension, double level);
-
-/// The NEES test of a planned study (STATISTICS 17).
-struct NeesTest {
-  std::uint64_t dimension = 3;  ///< number of components of the error
-  double level = kUsualLevel;   ///< probability that a consistent filter is not rejected
-  /// Number of independent scans in a run; 1 if errors never change within a run.
-  std::uint64_t scans = 1;
-};
-
-/// Power of a study with a given number of runs, for a filter whose squared errors are off by the
-/// same factor at all scans and in all components. found() and shown() are lower bounds.
-class NeesPlan {
- public:
-  /// Throws StudyError where `test` has no meaning, or has more than kMostPlannedScans scans.
-  explicit NeesPlan(const NeesTest& test);
-
-  /// Probability that `runs` runs show the ratio to differ from 1, on the side on which it does.
-  double found(double ratio, std::uint64_t runs) const;
-  /// Probability that `runs` runs show a consistent filter to be consistent within `within`.
-  double shown(double within, std::uint64_t runs) const;
-  /// The fewest runs for which found() or shown() is at least `power`. Throws StudyError where the
-  /// question has no meaning, or if more than kMostPlannedRuns are needed.
-  std::uint64_t runs_to_find(double ratio, double power) const;
-  std::uint64_t runs_to_show(double within, double power) const;
-
- private:
-  std::uint64_t fewest(const std::function<bool(std::uint64_t)>& is_enough) const;
-
-  NeesTest test_;
-};
-inline constexpr std::uint64_t kMostPlannedScans = 100'000;
-inline constexpr std::uint64_t kMostPlannedRuns = 1'000'000'000;
 
 }  // namespace montecarta::analysis

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/statistics/nees_bounds.hpp"
+#include "analysis/verdict/nees_plan.hpp"
 #include "analysis/study/text_table.hpp"
 #include "engine/core/judgement.hpp"
 #include "engine/text/number_text.hpp"

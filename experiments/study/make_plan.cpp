@@ -8,6 +8,7 @@
 #include "experiments/study/make_drives.hpp"
 #include "experiments/study/vehicle_and_sensor.hpp"
 #include "experiments/text/words.hpp"
+#include "filters/factory.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -202,8 +203,13 @@ RunRange parse_shard(const std::string& text, std::uint64_t runs, std::uint64_t 
 std::string objection_to_joint(const Study& study) {
   const auto has_joint = [](const CellSpec& cell) { return cell.filter->reports.joint; };
   if (std::ranges::none_of(study.cells, has_joint)) {
+    std::vector<std::string> names;
+    for (const FilterKind& kind : filter_kinds()) {
+      if (kind.reports.joint && !kind.name.starts_with("plain_")) names.push_back(kind.name);
+    }
     return "(none of the cells' filters has a joint covariance): take joint out, or add a cell of "
-           "ekf_slam, riekf_slam, relative_ekf_slam or smoother";
+           "one of " +
+           joined(names);
   }
   const Settings& settings = study.settings;
   if (settings.text("association", "kind") == "known" && settings.scenario_kind() == "simulated")

@@ -271,7 +271,7 @@ TEST(Words, SayWhatFailedAndKnowErrorsOfZero) {
   scan.members[0].from = scan.members[0].to = 1.0;
   EXPECT_EQ(in_words(judged({size(kRight), scan})),
             "consistent within 1.1, slightly optimistic at 1.0 s (1.05 to 1.50)");
-  EXPECT_THAT(sentence("a", judged({size({0.0, 0.0})})), HasSubstr("errors are exactly 0"));
+  EXPECT_THAT(sentence("a", judged({size({0.0, 0.0})})), HasSubstr("errors are all exactly 0"));
   EXPECT_THAT(in_words(judged({size({1e40, 1e50})})), HasSubstr("more than 1.00e20 times"));
   Verdict found = judged({size(kRight)});
   found.failed = 3;
