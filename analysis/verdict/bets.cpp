@@ -15,6 +15,8 @@ constexpr std::size_t kStakesBelow = 8;  // number of stakes, up to 2
 // Number of standard errors added to the estimated variance.
 constexpr double kErrorsOfVariance = 2.0;
 constexpr double kLeastVariance = 1e-4;  // least variance that sums of powers in doubles resolve
+// Smaller means of runs count as this one, so that their fourth powers are not 0.
+constexpr double kLeastMeanOfRun = 1e-60;
 constexpr double kVarianceOfOneError = 2.0;  // variance of the square of a Gaussian error
 
 double stake(std::size_t index) { return std::ldexp(kLeastStake, static_cast<int>(index)); }
@@ -38,6 +40,7 @@ double largest_mean_exponential(double s, double variance) {
 
 void Bets::add(double mean_of_run) {
   if (std::isnan(mean_of_run)) return;
+  mean_of_run = std::max(mean_of_run, kLeastMeanOfRun);
   ++runs_;
   for (std::size_t j = 0; j < kStakes; ++j) growth_[j] += std::log1p(stake(j) * mean_of_run);
   double power = 1.0;

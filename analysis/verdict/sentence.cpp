@@ -13,6 +13,7 @@
 #include <limits>
 #include <optional>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 namespace montecarta::analysis {
@@ -315,13 +316,19 @@ std::string ratio_words(const Verdict& verdict, Side direction) {
          (time.empty() ? "" : ", " + time);
 }
 
-/// Text of further families that are shown: "; also bias, between runs".
+/// The findings besides the leading one: "bias, correlation, between runs". Those of a stretch are
+/// not told from those of the whole drive, which the sentence does.
 std::string also_words(const Verdict& verdict) {
+  constexpr std::array<std::pair<const char*, std::array<Family, 2>>, 4> kFindings = {
+      {{"bias", {Family::bias, Family::bias_by_stretch}},
+       {"correlation", {Family::correlation, Family::correlation_by_stretch}},
+       {"between runs", {Family::between_runs, Family::between_runs}},
+       {"tails", {Family::tails, Family::tails}}}};
   std::string names;
-  for (const Family family :
-       {Family::bias, Family::bias_by_stretch, Family::correlation, Family::correlation_by_stretch,
-        Family::between_runs, Family::tails}) {
-    if (is_rejected(verdict, family)) names += (names.empty() ? "" : ", ") + name_of(family);
+  for (const auto& [name, families] : kFindings) {
+    const auto is_found = [&](Family family) { return is_rejected(verdict, family); };
+    if (std::ranges::any_of(families, is_found))
+      names += (names.empty() ? "" : ", ") + std::string(name);
   }
   return names;
 }

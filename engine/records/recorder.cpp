@@ -134,10 +134,11 @@ void Recorder::record_report(const ScanReport& report, std::size_t scan) {
     std::visit(put, reported.column);
   }
   if (report.own.size() != layout_->own_columns().size())
-    throw StudyError("the filter reports " + std::to_string(report.own.size()) +
-                     " values of its own (it declares " +
-                     std::to_string(layout_->own_columns().size()) +
-                     "): set ScanReport::own at every update");
+    throw StudyError(
+        "the filter reports " + std::to_string(report.own.size()) +
+        " values of its own (it declares " + std::to_string(layout_->own_columns().size()) +
+        "): set ScanReport::own at every update, to the columns that FilterKind::reports "
+        "and restrict_reports leave");
   for (const Own& own : own_) own.column[scan] = report.own[own.index];
 }
 

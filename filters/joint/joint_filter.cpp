@@ -139,7 +139,10 @@ FilterKind joint_kind(const char* name, const char* long_name, const char* sourc
           .sensors = {RangeBearingSensor::kName, PositionSensor::kName},
           .restrict_reports =
               [](const FilterSetup& setup, Capabilities& reports) {
-                if (!fixes_landmark(setup.belief.sensor)) reports.own_columns.clear();
+                if (fixes_landmark(setup.belief.sensor)) return;
+                std::erase_if(reports.own_columns, [](const OwnColumn& column) {
+                  return column.name == rotation_information_column().name;
+                });
               },
           .make = make};
 }

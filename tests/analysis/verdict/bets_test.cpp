@@ -128,9 +128,11 @@ TEST(Bets, WinOnTheSideOfTheRatio) {
   }
 }
 
-TEST(Bets, StandZerosAndTheLargestErrors) {
-  const Bets zeros = bets_on(std::vector<double>(50, 0.0));
-  EXPECT_GT(zeros.log_capital(Side::below, 1.1), 10.0);
+TEST(Bets, StandTheLeastAndTheLargestErrors) {
+  for (const double least : {0.0, 1e-300, 1e-160}) {
+    const Bets tiny = bets_on(std::vector<double>(50, least));
+    EXPECT_GT(tiny.log_capital(Side::below, 1.1), 10.0) << least;
+  }
   std::vector<double> means = scattered(1.0, 0.3, 50);
   means[7] = 1e60;
   const Bets huge = bets_on(means);

@@ -32,8 +32,7 @@ class Readme : public Program {};
 
 TEST_F(Readme, SlowHasTheFirstVerdictOfTheProgram) {
   const std::string study = MONTECARTA_SOURCE_DIR "/experiments/studies/first_study.ini";
-  const Called called =
-      call({"run", study, "-o", "first_study.h5", "--quiet"}, "export COLUMNS=80 && ");
+  const Called called = call({"run", study, "-o", "first_study.h5"}, "export COLUMNS=80 && ");
   ASSERT_EQ(called.code, 0) << called.err;
   const std::string printed = without_times(called.out);
   const std::vector<std::string> shown = output_below("What the first verdict means");
