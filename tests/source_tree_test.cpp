@@ -147,6 +147,46 @@ std::vector<std::string> defined_elsewhere(const Tree& tree) {
   return found;
 }
 
+/// Number of lines of the files that `path` includes, directly or through others, where a header
+/// brings the source of its name with it.
+std::size_t lines_reached(const Tree& tree, const std::string& path) {
+  std::set<std::string> reached;
+  std::vector<std::string> left = {path};
+  std::size_t lines = 0;
+  while (!left.empty()) {
+    const std::string next = left.back();
+    left.pop_back();
+    const auto file = tree.find(next);
+    if (file == tree.end() || !reached.insert(next).second) continue;
+    lines += file->second.size();
+    for (const std::string& name : includes_of(file->second)) left.push_back(name);
+    left.push_back(module_of(next) + ".cpp");
+  }
+  return lines;
+}
+
+/// Names of types that are defined in more than one module outside tests. Plain filters have the
+/// names of their fast counterparts.
+std::set<std::string> types_defined_twice(const Tree& tree) {
+  static const std::regex type(
+      R"(^\s*(?:struct|class|enum class) ([A-Z]\w*)(?: final)?(?: :.*)? \{)");
+  std::map<std::string, std::set<std::string>> modules;
+  std::smatch match;
+  for (const auto& [path, lines] : tree) {
+    const bool is_counted =
+        is_cpp(path) && top_folder_of(path) != "tests" && !path.starts_with("filters/plain/");
+    if (!is_counted) continue;
+    for (const std::string& line : lines) {
+      if (std::regex_search(line, match, type)) modules[match[1]].insert(module_of(path));
+    }
+  }
+  std::set<std::string> twice;
+  for (const auto& [name, where] : modules) {
+    if (where.size() > 1) twice.insert(name);
+  }
+  return twice;
+}
+
 /// Files outside tests that include a header of which `prefix` is the beginning.
 std::vector<std::string> users_of(const Tree& tree, const std::string& prefix) {
   std::vector<std::string> users;
@@ -233,6 +273,26 @@ TEST(SourceTree, FoldersIncludeEachOtherInNoCycle) {
 
 TEST(SourceTree, ModulesIncludeEachOtherInNoCycle) {
   EXPECT_THAT(include_cycles(sources(), module_of), IsEmpty());
+}
+
+TEST(SourceTree, MeasuringARunAndReadingAStudyReachLittle) {
+  EXPECT_LT(lines_reached(sources(), "analysis/run/measured_run.cpp"), 12'000U);
+  EXPECT_LT(lines_reached(sources(), "experiments/study/study.cpp"), 25'000U);
+  const Tree tree = {{"engine/a.cpp", {"#include \"engine/b.hpp\"", ""}},
+                     {"engine/b.hpp", {"#include \"engine/a.hpp\""}},
+                     {"engine/b.cpp", {"", "", ""}},
+                     {"engine/c.hpp", {""}}};
+  EXPECT_EQ(lines_reached(tree, "engine/a.cpp"), 6U);
+}
+
+TEST(SourceTree, FewTypesHaveTheNameOfAnother) {
+  EXPECT_LT(types_defined_twice(sources()).size(), 15U)
+      << testing::PrintToString(types_defined_twice(sources()));
+  const Tree tree = {
+      {"engine/a.hpp", {"struct One {", "  struct Two {", "class Three final : One {"}},
+      {"engine/a.cpp", {"struct Two {"}},
+      {"engine/b.cpp", {"class Three {", "struct One;"}}};
+  EXPECT_THAT(types_defined_twice(tree), ElementsAre("Three"));
 }
 
 // Scores are declared where their table is, which must not know the list of metrics that has them.
