@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/verdict/nees_plan.hpp"
 #include "analysis/study/text_table.hpp"
+#include "analysis/verdict/nees_plan.hpp"
 #include "engine/core/judgement.hpp"
 #include "engine/text/number_text.hpp"
 #include "engine/text/wrapped_text.hpp"
