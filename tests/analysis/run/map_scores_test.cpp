@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/run/map_scores.hpp"
+
 #include "analysis/run/measured_run.hpp"
 #include "analysis/run/reference_scores.hpp"
 #include "analysis/statistics/spread.hpp"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/run/pits.hpp"
 #include "analysis/verdict/calibration.hpp"
+
+#include "analysis/run/pits.hpp"
 #include "tests/analysis/reported.hpp"
 #include "tests/analysis/synthetic_runs.hpp"
 #include "tests/doubles/matchers.hpp"
