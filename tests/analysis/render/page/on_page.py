@@ -54,7 +54,7 @@ landmark = 6, 13
 landmark = -3, 6
 """
 OPEN_ALL = "for (const one of document.querySelectorAll('details')) one.open = true"
-FIRST_STUDY = pathlib.Path(__file__).parents[3] / "experiments/studies/first_study.ini"
+FIRST_STUDY = pathlib.Path(__file__).parents[4] / "experiments/studies/first_study.ini"
 CTRL, SHIFT = 2, 8  # modifiers of a key or click
 
 
