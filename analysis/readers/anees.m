@@ -77,11 +77,7 @@ function value = nees_in_range(e, P, least_variance)
   lower = tril(P, -1) + tril(P, -1)';
   most = least_variance * max(variance, least_variance)';
   if any(any(lower(~is_open, :) .^ 2 > most(~is_open, :))), return; end
-  is_excluded = any(abs(e(~is_open)) > 1e-9);
-  if ~any(is_open)
-    if is_excluded, value = 1e60; end
-    return
-  end
+  if ~any(is_open), return; end
   scale = 1 ./ sqrt(variance(is_open));
   [vectors, eigenvalues] = eig((lower(is_open, is_open) + diag(variance(is_open))) ...
                                .* (scale * scale'));
@@ -91,7 +87,7 @@ function value = nees_in_range(e, P, least_variance)
   inside = eigenvalues > 1e-12;
   rank = sum(inside);
   sum_inside = sum(along(inside) .^ 2 ./ eigenvalues(inside));
-  if is_excluded || sum(along(~inside) .^ 2) > 10 ^ 2, sum_inside = 1e60; end
+  if sum(along(~inside) .^ 2) > 10 ^ 2, sum_inside = 1e60; end
   tail = gammainc(sum_inside / 2, rank / 2, 'upper');  % chi-square
   beyond = @(tail, d) 2 * gammaincinv(tail, d / 2, 'upper');
   if tail > 1e-6

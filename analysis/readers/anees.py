@@ -48,17 +48,16 @@ def nees_in_range(e, P, least_variance):
     lower = np.tril(P, -1) + np.tril(P, -1).T
     if (lower**2 > most)[~is_open].any():
         return np.nan
-    is_excluded = (abs(e[~is_open]) > 1e-9).any()
     if not is_open.any():
-        return LARGEST if is_excluded else np.nan
+        return np.nan
     scale = 1 / np.sqrt(variance[is_open])
     eigenvalues, vectors = np.linalg.eigh(P[np.ix_(is_open, is_open)] * np.outer(scale, scale))
     along = vectors.T @ (scale * e[is_open])
     if (eigenvalues < -1e-9).any():
         return np.nan
     inside = eigenvalues > 1e-12
-    is_excluded = is_excluded or (along[~inside] ** 2).sum() > 10.0**2
-    value = LARGEST if is_excluded else (along[inside] ** 2 / eigenvalues[inside]).sum()
+    is_outside = (along[~inside] ** 2).sum() > 10.0**2
+    value = LARGEST if is_outside else (along[inside] ** 2 / eigenvalues[inside]).sum()
     tail = chi2.sf(value, inside.sum())
     if tail > 1e-6:
         return chi2.isf(tail, d)

@@ -223,7 +223,8 @@ def judge(members, level, within):
     adjusted = dict(zip(order, np.minimum(1.0, holm)))
     rows, is_within, signs, is_rejected = [], True, set(), False
     for family, _, estimate, p, interval in members:
-        n, limit = sizes[family], alpha * (least[family] / adjusted[family] or 1)
+        n = sizes[family]
+        limit = alpha * (least[family] / adjusted[family] if adjusted[family] else 1)
         shown = adjusted[family] <= alpha and p * n <= limit
         own, joint = interval(level), interval(1 - alpha / (len(sizes) * n))
         rows.append((own, joint, adjusted[family], shown))

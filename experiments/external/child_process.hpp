@@ -16,7 +16,9 @@ namespace montecarta::experiments {
 /// A second process that kills the guarded process groups when this process has ended, for
 /// whichever reason. It waits on a socket of which only this process holds the other end, so it
 /// cannot miss the end. (A parent-death signal would depend on the thread that started a program
-/// instead of the process.) May be used by any number of threads.
+/// instead of the process.) A program runs for a moment before the guard knows it; if this process
+/// is killed in that moment, only the end of its input tells the program to end. May be used by any
+/// number of threads.
 class OrphanGuard {
  public:
   /// The guard of this process, which the first call starts.

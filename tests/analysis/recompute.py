@@ -69,7 +69,7 @@ class Corrected:
     def __init__(self, dof):
         self.dof = dof
         last = np.log2(stats.chi2.isf(1e-6, dof))
-        self.octaves = -16 + np.arange(int((last + 16) * 8) + 1) / 8
+        self.octaves = last - np.arange(int((last + 16) * 8), -1, -1) / 8
         c, freedom = 2**self.octaves, 1 / (0.5 * np.arange(1, 129) / 128)
         above, below = stats.chi2.sf(c, dof), stats.chi2.cdf(c, dof)
         f = np.where(above < 0.5, stats.f.isf(above, dof, freedom[:, None]),
