@@ -15,7 +15,6 @@
 #include "analysis/study/section.hpp"
 #include "analysis/study/study_analysis.hpp"
 #include "analysis/study/study_comparison.hpp"
-#include "engine/errors.hpp"
 #include "engine/text/wrapped_text.hpp"
 
 #include <algorithm>
@@ -29,16 +28,6 @@ namespace montecarta::analysis {
 namespace {
 
 namespace fs = std::filesystem;
-
-void refuse_existing(const fs::path& directory, ExistingReport existing) {
-  if (existing == ExistingReport::replace) return;
-  for (const char* name : {"index.html", "summary.md", "figures", "data", "tables"}) {
-    if (!fs::exists(directory / name)) continue;
-    throw StudyError((directory / name).string() +
-                     ": is there already (nothing is overwritten unasked): add --force, or choose "
-                     "another directory");
-  }
-}
 
 /// Removes the element of this name from `all` and returns it; nullopt if there is none.
 template <class Named>
@@ -121,8 +110,13 @@ void write_files(const StudyAnalysis& study, const StudyComparison& comparison,
 
 }  // namespace
 
+const std::vector<std::string>& report_names() {
+  static const std::vector<std::string> names = {"index.html", "summary.md", "figures", "data",
+                                                 "tables"};
+  return names;
+}
+
 void write_report(const ResultFile& file, const fs::path& directory, const ReportOptions& options) {
-  refuse_existing(directory, options.existing);
   const StudyAnalysis study = analyze(file, options.level, *options.parallel, options.within);
   const StudyComparison comparison = compare_study(
       study, study.cells.front().label, usual_scores(study.has_truth), *options.parallel);

@@ -7,25 +7,27 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace montecarta::analysis {
 
-/// The treatment of a report that is already there.
-enum class ExistingReport { refuse, replace };
+/// {name} The files and folders of a report.
+const std::vector<std::string>& report_names();
 
 struct ReportOptions {
   double level = kUsualLevel;    ///< level of NEES bounds and tests
   std::optional<double> within;  ///< margin of consistent ratios; default: that of the study
   /// Number of the run that is drawn and replayed; default: chosen_run().
   std::optional<std::uint64_t> run;
-  ExistingReport existing = ExistingReport::refuse;
   const Parallel* parallel = &Parallel::serial();
 };
 
 /// Writes index.html (self-contained), summary.md (its tables and first figure), figures/*.svg and
 /// *.pdf, data/*.csv (each figure's numbers) and tables/*.csv, *.tex into `directory`, which is
-/// made where it is missing. Figures are drawn by gnuplot. Throws StudyError where a report is
-/// there already or gnuplot is missing, RunError where a file cannot be written or gnuplot fails.
+/// made where it is missing; a report that is there is replaced. Figures are drawn by gnuplot.
+/// Throws StudyError where gnuplot is missing, RunError where a file cannot be written or gnuplot
+/// fails.
 void write_report(const ResultFile& file, const std::filesystem::path& directory,
                   const ReportOptions& options = {});
 

@@ -70,20 +70,19 @@ DriveCriteria criteria_of_drive(const RunDrive& drive) {
 }  // namespace
 
 RunCriteria criteria_of(const ResultFile& file, double level, double within) {
-  RunCriteria criteria{
-      .times = file.scan_times(),
-      .level = level,
-      .within = within,
-      .references = {},
-      .beacons = {},
-      .map = map_criteria_of(file),
-      .joint_scans = file.description().joint_scans,
-      .frame = error_frame_of(file),
-      .calibrates = noise_is_matched(file),
-      .runs_at_analyses = interim_analyses_in(file.study_text(), file.study_runs()),
-      .share_of_runs =
-          static_cast<double>(file.runs().size()) / static_cast<double>(file.study_runs()),
-      .components = {kErrorComponents.begin(), kErrorComponents.end()}};
+  RunCriteria criteria{.times = file.scan_times(),
+                       .level = level,
+                       .within = within,
+                       .references = {},
+                       .beacons = {},
+                       .map = map_criteria_of(file),
+                       .joint_scans = file.description().joint_scans,
+                       .frame = error_frame_of(file),
+                       .calibrates = noise_is_matched(file),
+                       .runs_at_analyses = study_facts_of(file).runs_at_analyses,
+                       .share_of_runs = static_cast<double>(file.runs().size()) /
+                                        static_cast<double>(file.study_runs()),
+                       .components = {kErrorComponents.begin(), kErrorComponents.end()}};
   const ImportedState imported =
       file.cells().empty() ? ImportedState() : imported_state(file.cells().front());
   if (imported.is_imported()) criteria.components = imported.components;

@@ -8,13 +8,23 @@
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace montecarta::analysis {
+
+std::string name_of(ErrorBlock block) {
+  return std::array{"pose", "position", "heading"}.at(static_cast<std::size_t>(block));
+}
+
+std::string name_of(Moments moments) {
+  return std::array{"corrected", "mixture", "spread"}.at(static_cast<std::size_t>(moments));
+}
 
 bool is_drawn(const RunRows& rows, std::size_t s) {
   const std::vector<double>&spread = rows.spread.covariance, &mixture = rows.mixture.covariance;

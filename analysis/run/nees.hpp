@@ -10,6 +10,7 @@
 #include <array>
 #include <cstddef>
 #include <span>
+#include <string>
 
 namespace montecarta::analysis {
 
@@ -36,6 +37,9 @@ enum class ErrorBlock {
 
 inline constexpr std::array kErrorBlocks = {ErrorBlock::pose, ErrorBlock::position,
                                             ErrorBlock::heading};
+
+std::string name_of(ErrorBlock block);
+std::string name_of(Moments moments);
 
 /// Number of components of a block.
 constexpr std::size_t dimension_of(ErrorBlock block) {

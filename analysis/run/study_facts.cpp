@@ -5,11 +5,15 @@
 #include "engine/runs/monte_carlo.hpp"
 
 #include <charconv>
+#include <optional>
 #include <sstream>
+#include <string_view>
 
 namespace montecarta::analysis {
+namespace {
 
-std::optional<std::string> study_setting(const std::string& study_text, std::string_view key) {
+/// The value of `key` in the section [study]; nullopt if it is not given.
+std::optional<std::string> setting_in(const std::string& study_text, std::string_view key) {
   const std::string beginning = std::string(key) + " = ";
   std::istringstream lines(study_text);
   bool inside = false;
@@ -20,23 +24,36 @@ std::optional<std::string> study_setting(const std::string& study_text, std::str
   return std::nullopt;
 }
 
-double margin_in(const std::string& study_text) {
-  const auto text = study_setting(study_text, "within");
-  if (!text) return kUsualMargin;
+double margin_from(const std::string& text) {
   double margin = 0.0;
-  const char* const last = text->data() + text->size();
-  const auto [end, error] = std::from_chars(text->data(), last, margin);
+  const char* const last = text.data() + text.size();
+  const auto [end, error] = std::from_chars(text.data(), last, margin);
   const bool is_good = error == std::errc() && end == last && margin >= kLeastMargin;
   if (is_good && margin <= kMostMargin) return margin;
-  throw StudyError("study.within = " + *text +
+  throw StudyError("study.within = " + text +
                    " (a ratio from 1.001 to 100 is needed): choose another file");
 }
 
-std::vector<std::uint64_t> interim_analyses_in(const std::string& study_text, std::uint64_t runs) {
-  const std::string until = study_setting(study_text, "until").value_or("");
+}  // namespace
+
+StudyFacts study_facts_in(const std::string& study_text, std::uint64_t runs) {
+  StudyFacts facts;
+  if (const auto within = setting_in(study_text, "within")) facts.within = margin_from(*within);
+  const std::string until = setting_in(study_text, "until").value_or("");
+  facts.stops_early = !until.empty();
   const std::string with_runs = std::string(kUntilVerdict) + ", ";  // "verdict, 100 runs"
-  if (until != kUntilVerdict && !until.starts_with(with_runs)) return {};
-  return rounds_of(runs);
+  if (until == kUntilVerdict || until.starts_with(with_runs)) {
+    facts.runs_at_analyses = rounds_of(runs);
+  }
+  return facts;
+}
+
+StudyFacts study_facts_of(const ResultFile& file) {
+  try {
+    return study_facts_in(file.study_text(), file.study_runs());
+  } catch (const StudyError& error) {
+    throw StudyError(file.path().string() + " (the study in it): " + error.what());
+  }
 }
 
 }  // namespace montecarta::analysis

@@ -2,25 +2,28 @@
 #pragma once
 
 #include "engine/core/judgement.hpp"
+#include "engine/records/result_file.hpp"
 
 #include <cstdint>
-#include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace montecarta::analysis {
 
-/// The value of `key` in the section [study] of the resolved study of a result file; nullopt if it
-/// is not given.
-std::optional<std::string> study_setting(const std::string& study_text, std::string_view key);
+/// How a study wants to be judged, as the section [study] of its resolved text says.
+struct StudyFacts {
+  double within = kUsualMargin;  ///< margin of consistent ratios
+  bool stops_early = false;      ///< whether cells may end before all runs are made
+  /// {interim analysis} Numbers of runs, if cells stop by verdict; else empty: there is one
+  /// analysis, after all runs.
+  std::vector<std::uint64_t> runs_at_analyses = {};
+};
 
-/// The value of study.within in a resolved study, else kUsualMargin. Throws StudyError if it is no
-/// number from kLeastMargin to kMostMargin.
-double margin_in(const std::string& study_text);
+/// The facts of a study of `runs` runs. Throws StudyError if study.within is no number from
+/// kLeastMargin to kMostMargin.
+StudyFacts study_facts_in(const std::string& study_text, std::uint64_t runs);
 
-/// {interim analysis} Numbers of runs in a study of `runs` runs, if its cells stop by verdict; else
-/// empty: there is one analysis, after all runs.
-std::vector<std::uint64_t> interim_analyses_in(const std::string& study_text, std::uint64_t runs);
+/// The facts of the study in the file. Throws StudyError as study_facts_in() does.
+StudyFacts study_facts_of(const ResultFile& file);
 
 }  // namespace montecarta::analysis

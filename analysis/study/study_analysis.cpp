@@ -30,7 +30,7 @@ bool is_work_in_progress(const std::filesystem::path& path) {
 /// interim analyses, the run lies before the first of them, or the run was made.
 void expect_planned(const ResultFile& file, const StoredCell& cell, std::size_t i) {
   file.expect_whole(cell, i);
-  if (!study_setting(file.study_text(), "until").value_or("").empty() && i >= kFirstRound) return;
+  if (study_facts_of(file).stops_early && i >= kFirstRound) return;
   throw StudyError(file.path().string() + ": cell '" + cell.label + "', run " +
                    std::to_string(file.runs()[i]) +
                    ": damaged (marked as not needed, but the study plans no such end there): take "
@@ -39,7 +39,7 @@ void expect_planned(const ResultFile& file, const StoredCell& cell, std::size_t 
 
 /// Counts the interim analyses that were planned and made, by the runs that were made.
 void count_analyses(const ResultFile& file, CellAnalysis& cell) {
-  const auto planned = interim_analyses_in(file.study_text(), file.study_runs());
+  const auto planned = study_facts_of(file).runs_at_analyses;
   const std::uint64_t made = cell.runs.size() + cell.failures.size();
   cell.analyses_planned = planned.size();
   cell.analyses_made = static_cast<std::size_t>(
@@ -140,20 +140,6 @@ void expect_usable_sums(const ResultFile& file, double level) {
   }
 }
 
-/// A fact of the study in the file, read from its text by a function.
-template <class Read>
-auto read_study(const ResultFile& file, Read read) {
-  try {
-    return read(file.study_text());
-  } catch (const StudyError& error) {
-    throw StudyError(file.path().string() + " (the study in it): " + error.what());
-  }
-}
-
-double margin_of(const ResultFile& file, std::optional<double> within) {
-  return within ? *within : read_study(file, margin_in);
-}
-
 void expect_scans(const ResultFile& file) {
   if (!file.scan_times().empty()) return;
   throw StudyError(file.path().string() +
@@ -172,8 +158,9 @@ StudyAnalysis begin(const ResultFile& file, double level, std::optional<double> 
   study.study_runs = file.study_runs();
   study.runs_here = runs_in(file);
   study.level = level;
-  study.within = margin_of(file, within);
-  study.runs_at_analyses = interim_analyses_in(file.study_text(), file.study_runs());
+  StudyFacts facts = study_facts_of(file);
+  study.within = within.value_or(facts.within);
+  study.runs_at_analyses = std::move(facts.runs_at_analyses);
   study.times = file.scan_times();
   for (const std::uint32_t scan : file.description().joint_scans) {
     study.joint_times.push_back(study.times[scan]);
@@ -251,7 +238,8 @@ CellAnalysis analyze_cell(const ResultFile& file, const StoredCell& cell, double
                           std::optional<double> within) {
   expect_scans(file);
   expect_usable_sums(file, level);
-  const RunCriteria criteria = criteria_of(file, level, margin_of(file, within));
+  const RunCriteria criteria =
+      criteria_of(file, level, within.value_or(study_facts_of(file).within));
   CellTask task(file, cell, runs);
   task.put(std::move(sums_of_tasks(file, std::span(&task, 1), criteria, parallel).front()));
   return std::move(task.cell);

@@ -118,19 +118,27 @@ std::vector<TableRow> lines_of_row(const TableRow& row, const std::vector<std::s
 
 }  // namespace
 
-std::string aligned(const std::vector<TableRow>& rows, std::size_t indent,
-                    const std::vector<Align>& alignment, std::size_t gap) {
+std::vector<std::string> aligned_lines(const std::vector<TableRow>& rows,
+                                       const std::vector<Align>& alignment, std::size_t gap) {
   const std::vector<std::size_t> widths = widths_of(rows);
-  std::string text;
+  std::vector<std::string> lines;
   for (const TableRow& row : rows) {
-    std::string line(indent, ' ');
+    std::string line;
     for (std::size_t c = 0; c < row.size(); ++c) {
       const std::string space(widths[c] - row[c].size(), ' ');
       const bool is_right = c < alignment.size() && alignment[c] == Align::right;
       line += (is_right ? space + row[c] : row[c] + space) + std::string(gap, ' ');
     }
-    text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
+    lines.push_back(line.substr(0, line.find_last_not_of(' ') + 1));
   }
+  return lines;
+}
+
+std::string aligned(const std::vector<TableRow>& rows, std::size_t indent,
+                    const std::vector<Align>& alignment, std::size_t gap) {
+  std::string text;
+  for (const std::string& line : aligned_lines(rows, alignment, gap))
+    text += std::string(line.empty() ? 0 : indent, ' ') + line + "\n";
   return text;
 }
 

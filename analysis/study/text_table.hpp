@@ -42,9 +42,13 @@ struct TextTable {
   Tone tone_at(std::size_t row, std::size_t column) const;
 };
 
-/// Rows as text with their columns aligned, `gap` spaces between them, and each line indented by
-/// `indent`. Columns without an element of `alignment` {column} are left-aligned; no line ends in
-/// spaces.
+/// {row} Rows as lines with their columns aligned, `gap` spaces between them. Columns without an
+/// element of `alignment` {column} are left-aligned; no line ends in spaces.
+std::vector<std::string> aligned_lines(const std::vector<TableRow>& rows,
+                                       const std::vector<Align>& alignment = {},
+                                       std::size_t gap = 2);
+
+/// These lines as one text, each indented by `indent`.
 std::string aligned(const std::vector<TableRow>& rows, std::size_t indent = 2,
                     const std::vector<Align>& alignment = {}, std::size_t gap = 2);
 

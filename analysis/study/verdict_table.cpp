@@ -101,14 +101,6 @@ void leave_out(std::size_t c, const std::string& text, TextTable& table) {
 
 }  // namespace
 
-std::string name_of(ErrorBlock block) {
-  return std::array{"pose", "position", "heading"}.at(static_cast<std::size_t>(block));
-}
-
-std::string name_of(Moments moments) {
-  return std::array{"corrected", "mixture", "spread"}.at(static_cast<std::size_t>(moments));
-}
-
 Frame::Row numbers_of(const CellAnalysis& cell, const NeesResult& nees, double level) {
   const std::size_t dimension = nees.series.dimension;
   const Interval band = nees_bounds(cell.complete, dimension, level);

@@ -73,10 +73,6 @@ Tone tone_of(const Verdict& verdict);
 /// Failed runs are bad news.
 Tone tone_of_runs(const CellAnalysis& cell);
 
-std::string name_of(ErrorBlock block);
-
-std::string name_of(Moments moments);
-
 /// The NEES ratio with its interval; "-" if it is not tested.
 std::string ratio_text(const CellAnalysis& cell);
 

@@ -11,6 +11,14 @@
 #include <utility>
 
 namespace montecarta::analysis {
+
+std::vector<std::size_t> ends_of_stretches(std::size_t scans) {
+  const std::size_t stretches = scans < 2 * kStretches ? 1 : kStretches;
+  std::vector<std::size_t> ends;
+  for (std::size_t s = 1; s <= stretches; ++s) ends.push_back(s * scans / stretches);
+  return ends;
+}
+
 namespace {
 
 /// The law of the mean of `freedom` squares of independent standard normal variables. Results are
@@ -140,11 +148,10 @@ std::vector<FamilyTest> SummedError::white_families(double level,
     all.push_back(exact_test(family, std::move(member), dimensions, law));
   };
   add_sum(Family::size, {.name = "all"}, 0, scans_.size());
-  const std::size_t stretches = scans_.size() < 2 * kStretches ? 0 : kStretches;
-  for (std::size_t k = 0; k < stretches; ++k) {
-    const std::size_t first = k * scans_.size() / stretches;
-    const std::size_t end = (k + 1) * scans_.size() / stretches;
-    add_sum(Family::stretch, {.from = times[first], .to = times[end - 1]}, first, end);
+  const std::vector<std::size_t> ends = ends_of_stretches(scans_.size());
+  for (std::size_t k = 0; k < ends.size() && ends.size() > 1; ++k) {
+    const std::size_t first = k == 0 ? 0 : ends[k - 1];
+    add_sum(Family::stretch, {.from = times[first], .to = times[ends[k] - 1]}, first, ends[k]);
   }
   return judge_tests(std::move(all), level);
 }

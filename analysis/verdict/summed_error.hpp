@@ -14,6 +14,9 @@ namespace montecarta::analysis {
 /// Number of stretches of a drive that are judged by themselves, if there are twice as many scans.
 inline constexpr std::size_t kStretches = 8;
 
+/// {stretch} 1 + its last scan, of a drive of `scans` scans; one stretch if there are too few.
+std::vector<std::size_t> ends_of_stretches(std::size_t scans);
+
 /// The test of a ratio of squared errors to the expected ones over runs, as a member of `family`.
 MemberTest ratio_test(Family family, Member member, const RunMean& ratio);
 

@@ -23,13 +23,6 @@ constexpr std::size_t kMostKeptErrors = 8'000'000;  // 64 MB
 /// files have few digits.
 constexpr std::size_t kFewestErrorsOfARepeat = 8;
 
-std::vector<std::size_t> ends_of_stretches(std::size_t scans) {
-  const std::size_t stretches = scans < 2 * kStretches ? 1 : kStretches;
-  std::vector<std::size_t> ends;
-  for (std::size_t s = 1; s <= stretches; ++s) ends.push_back(s * scans / stretches);
-  return ends;
-}
-
 /// {number} Means of one run in single stretches and over the whole drive.
 class Means {
  public:

@@ -13,6 +13,9 @@ std::string visible(std::string_view text, std::string_view kept = "");
 /// The bytes in two lower-case hexadecimal digits each.
 std::string hexadecimal(std::string_view bytes);
 
+/// `word`, quoted so that a POSIX shell reads it back as one word.
+std::string shell_quoted(const std::string& word);
+
 /// Number of bytes at the end of `text` that begin an incomplete character: 0 to 3.
 std::size_t unfinished_bytes(std::string_view text);
 

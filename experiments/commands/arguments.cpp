@@ -3,6 +3,7 @@
 
 #include "engine/errors.hpp"
 #include "engine/records/provenance.hpp"
+#include "engine/text/visible_text.hpp"
 #include "engine/text/wrapped_text.hpp"
 #include "engine/threads/thread_budget.hpp"
 #include "experiments/files/files.hpp"
@@ -269,14 +270,6 @@ std::string help_text(const CommandSpec& spec) {
                      "\n\n" + spec.summary + "\n\noptions:\n",
                  output_width()) +
          listing(options) + wrapped("\n" + spec.details, output_width());
-}
-
-std::string shell_quoted(const std::string& word) {
-  const char* plain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-./:=,+@%";
-  if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
-  std::string quoted = "'";
-  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
 }
 
 namespace {

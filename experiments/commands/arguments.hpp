@@ -79,9 +79,6 @@ class Arguments {
 /// The text of --help: "montecarta run STUDY.ini -o OUT.h5 [options]", summary, options, details.
 std::string help_text(const CommandSpec& spec);
 
-/// `word`, quoted so that a POSIX shell reads it back as one word.
-std::string shell_quoted(const std::string& word);
-
 /// Returns `allowed` if --allow-external was given. Throws StudyError if it was not and a cell of
 /// the study is an external program.
 ExternalPrograms programs_of(const Study& study, const Arguments& arguments);

@@ -22,7 +22,6 @@
 #include <malloc.h>
 #include <new>
 #include <set>
-#include <sstream>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -272,16 +271,12 @@ void print_details(const Study& study, const StudyPlan& plan) {
 /// Prints a row for each cell. If a label leaves no room for the numbers, they are printed below
 /// it.
 void print_cells(const StudyPlan& plan, const std::vector<TableRow>& rows) {
-  std::istringstream lines(aligned(rows, 0, {Align::right, Align::right, Align::right}));
-  std::string line;
-  std::getline(lines, line);
-  TextPairs items{{"cell", line}};
-  for (const Cell& cell : plan.cells) {
-    std::getline(lines, line);
-    items.emplace_back(cell.label, line);
-  }
-  std::cout << "\n"
-            << listing(items, 2, output_width() - std::min(line.size() + 4, output_width() / 2));
+  const auto lines = aligned_lines(rows, {Align::right, Align::right, Align::right});
+  TextPairs items{{"cell", lines.front()}};
+  for (std::size_t i = 0; i < plan.cells.size(); ++i)
+    items.emplace_back(plan.cells[i].label, lines[i + 1]);
+  const std::size_t numbers = std::min(lines.back().size() + 4, output_width() / 2);
+  std::cout << "\n" << listing(items, 2, output_width() - numbers);
 }
 
 }  // namespace

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
-#include <sstream>
 
 namespace montecarta::experiments {
 namespace {
@@ -69,13 +68,9 @@ struct Dataset {
 void print_datasets(const std::vector<Dataset>& datasets, std::size_t indent) {
   std::vector<TableRow> rows;
   for (const Dataset& dataset : datasets) rows.push_back({dataset.name, bytes_text(dataset.bytes)});
-  std::istringstream lines(aligned(rows, 0, {Align::left, Align::right}));
+  const auto lines = aligned_lines(rows, {Align::left, Align::right});
   TextPairs items;
-  for (const Dataset& dataset : datasets) {
-    std::string line;
-    std::getline(lines, line);
-    items.emplace_back(line, dataset.meaning);
-  }
+  for (std::size_t i = 0; i < lines.size(); ++i) items.emplace_back(lines[i], datasets[i].meaning);
   std::cout << listing(items, indent, output_width() / 2);
 }
 

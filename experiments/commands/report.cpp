@@ -5,6 +5,7 @@
 #include "engine/core/judgement.hpp"
 #include "experiments/commands/arguments.hpp"
 #include "experiments/commands/commands.hpp"
+#include "experiments/commands/output_path.hpp"
 #include "experiments/commands/stored_result.hpp"
 
 #include <filesystem>
@@ -35,8 +36,8 @@ int report_command(const Arguments& arguments) {
   options.level = arguments.number("level", 1e-9, 1.0 - 1e-9).value_or(options.level);
   options.within = arguments.number("within", kLeastMargin, kMostMargin);
   options.run = arguments.count("run", 0, UINT32_MAX);
-  options.existing = arguments.has("force") ? ExistingReport::replace : ExistingReport::refuse;
   options.parallel = &parallel;
+  if (!arguments.has("force")) refuse_existing(directory, report_names());
   require_gnuplot();
   write_report(open_stored(arguments.operands().front()), directory, options);
   std::cout << (directory / "index.html").string() << "\n";

@@ -7,6 +7,7 @@
 #include "engine/records/result_file.hpp"
 #include "engine/runs/monte_carlo.hpp"
 #include "engine/runs/progress.hpp"
+#include "engine/text/visible_text.hpp"
 #include "engine/text/wrapped_text.hpp"
 #include "engine/threads/thread_budget.hpp"
 #include "experiments/commands/arguments.hpp"
@@ -62,7 +63,7 @@ std::optional<std::filesystem::path> report_folder(const RunOptions& options,
                                                    const Arguments& arguments) {
   if (arguments.has("output") || options.quiet) return std::nullopt;
   std::filesystem::path folder = options.output.stem() += "_report";
-  if (!options.force) refuse_existing(folder, {"index.html"});
+  if (!options.force) refuse_existing(folder, analysis::report_names());
   return folder;
 }
 
@@ -98,8 +99,6 @@ void print_how_to_resume(const RunOutcome& outcome, const std::filesystem::path&
 std::string draw_report(const ResultFile& file, const std::filesystem::path& folder,
                         const RunOptions& options) {
   analysis::ReportOptions how;
-  how.existing =
-      options.force ? analysis::ExistingReport::replace : analysis::ExistingReport::refuse;
   how.parallel = &options.parallel;
   try {
     analysis::write_report(file, folder, how);

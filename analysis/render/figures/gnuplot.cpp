@@ -98,10 +98,6 @@ namespace {
 
 constexpr const char* kNextSession = " -e 'reset session'";
 
-std::string shell_quoted(const std::string& word) {
-  return "'" + replaced(word, "'", "'\\''") + "'";
-}
-
 }  // namespace
 
 void run_gnuplot(const std::filesystem::path& directory, const std::vector<std::string>& scripts,

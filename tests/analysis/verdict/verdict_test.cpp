@@ -307,7 +307,8 @@ TEST(Gate, StopsAFilterThatFailsOrWhoseSamplesAreUnusable) {
   EXPECT_EQ(gate(none), GateAnswer::inconsistent);
 }
 
-TEST(Margin, IsThatOfTheStudyInTheFileOrRefused) {
+TEST(StudyFacts, HaveTheMarginOfTheStudyInTheFileOrRefuseIt) {
+  const auto margin_in = [](const std::string& text) { return study_facts_in(text, 1).within; };
   EXPECT_EQ(margin_in(""), kUsualMargin);
   EXPECT_EQ(margin_in("[study]\nname = a\n[record]\nwithin = 3\n"), kUsualMargin);
   EXPECT_EQ(margin_in("[study]\nname = a\nwithin = 1.25\n[scenario]\n"), 1.25);
@@ -316,15 +317,19 @@ TEST(Margin, IsThatOfTheStudyInTheFileOrRefused) {
   }
 }
 
-TEST(Looks, AreTheRoundsOfAStudyThatStopsByVerdictOnly) {
+TEST(StudyFacts, HaveInterimAnalysesOfAStudyThatStopsByVerdictOnly) {
+  const auto analyses = [](const std::string& text, std::uint64_t runs) {
+    return study_facts_in(text, runs).runs_at_analyses;
+  };
   const std::string text = "[study]\nname = a\nuntil = verdict\n[scenario]\n";
-  EXPECT_THAT(interim_analyses_in(text, 200), ElementsAre(32, 64, 128, 200));
-  EXPECT_THAT(interim_analyses_in(text, 20), ElementsAre(20));
-  EXPECT_THAT(interim_analyses_in("[study]\nuntil = verdict, 100 runs\n", 64), ElementsAre(32, 64));
-  EXPECT_THAT(interim_analyses_in("", 200), IsEmpty());
-  EXPECT_THAT(interim_analyses_in("[study]\nuntil = position_rmse < 1\n", 200), IsEmpty());
-  EXPECT_THAT(interim_analyses_in("[study]\nname = a\n[record]\nuntil = verdict\n", 200),
-              IsEmpty());
+  EXPECT_THAT(analyses(text, 200), ElementsAre(32, 64, 128, 200));
+  EXPECT_THAT(analyses(text, 20), ElementsAre(20));
+  EXPECT_THAT(analyses("[study]\nuntil = verdict, 100 runs\n", 64), ElementsAre(32, 64));
+  EXPECT_THAT(analyses("", 200), IsEmpty());
+  const std::string by_score = "[study]\nuntil = position_rmse < 1\n";
+  EXPECT_THAT(analyses(by_score, 200), IsEmpty());
+  EXPECT_TRUE(study_facts_in(by_score, 200).stops_early);
+  EXPECT_THAT(analyses("[study]\nname = a\n[record]\nuntil = verdict\n", 200), IsEmpty());
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include "experiments/commands/commands.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/text/visible_text.hpp"
 #include "experiments/commands/arguments.hpp"
 #include "tests/doubles/complaint.hpp"
 #include "tests/doubles/matchers.hpp"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/text/visible_text.hpp"
 #include "experiments/commands/arguments.hpp"
 
 #include <gmock/gmock.h>

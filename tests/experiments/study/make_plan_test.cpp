@@ -101,8 +101,8 @@ TEST(Plan, RefusesJointEstimatesThatNoCellHas) {
 
 TEST(Plan, KeepsTheMarginInTheText) {
   const StudyPlan plan = make_plan(parsed(with("[scenario]", "within = 1.25\n[scenario]")));
-  EXPECT_EQ(margin_in(plan.resolved_text), 1.25);
-  EXPECT_EQ(margin_in(make_plan(parsed(kGoodStudy)).resolved_text), kUsualMargin);
+  EXPECT_EQ(study_facts_in(plan.resolved_text, 1).within, 1.25);
+  EXPECT_EQ(study_facts_in(make_plan(parsed(kGoodStudy)).resolved_text, 1).within, kUsualMargin);
   EXPECT_EQ(kUsualMarginText, to_text(kUsualMargin));
 }
 
