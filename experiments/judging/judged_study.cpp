@@ -6,6 +6,7 @@
 #include "engine/records/fingerprint.hpp"
 #include "engine/records/posix_file.hpp"
 #include "experiments/files/files.hpp"
+#include "experiments/judging/innovation_rows.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>

@@ -6,7 +6,7 @@
 #include "engine/records/result_writer.hpp"
 #include "experiments/judging/error_convention.hpp"
 #include "experiments/judging/run_files.hpp"
-#include "experiments/judging/state_columns.hpp"
+#include "experiments/judging/truth_at.hpp"
 
 #include <filesystem>
 #include <optional>

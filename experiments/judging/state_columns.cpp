@@ -3,21 +3,19 @@
 
 #include "analysis/run/nees.hpp"
 #include "engine/errors.hpp"
-#include "engine/numbers/angle.hpp"
-#include "experiments/files/files.hpp"
 #include "experiments/text/words.hpp"
-
-#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <iterator>
 #include <map>
-#include <string_view>
+#include <utility>
 
 namespace montecarta::experiments {
 namespace {
+
+using Names = std::vector<std::string>;
 
 const StateShape& pose_in_space_shape() {
   static const StateShape shape = {StateKind::pose_in_space,
@@ -27,17 +25,7 @@ const StateShape& pose_in_space_shape() {
   return shape;
 }
 
-using Names = std::vector<std::string>;
-
-/// Indices of the fields in a row of a file of estimates.
-struct EstimateFields {
-  StateShape shape;
-  std::vector<std::size_t> state;       ///< {width} fields of the state
-  std::vector<std::size_t> covariance;  ///< {d, d} fields; from a triangle, elements occur twice
-  std::optional<std::size_t> nis, nis_dof;  ///< both are present or neither
-};
-
-const std::string kTimeColumn = "time_s", kCovariancePrefix = "cov_";
+const std::string kCovariancePrefix = "cov_";
 const Names kPoseColumns = {"x_m", "y_m", "heading_rad"};
 const Names kQuaternionColumns = {"qx", "qy", "qz", "qw"};
 const std::string kNis = "nis", kNisDof = "nis_dof";
@@ -182,9 +170,39 @@ bool is_of_state(const std::string& name) {
          !name.starts_with(kCovariancePrefix);
 }
 
-/// Parses the header of estimates: `time_s`, the state, then `cov_A_B`, where A and B are names of
-/// components or indices from 0, for the whole covariance or one triangle, and optionally `nis` and
-/// `nis_dof`. Throws StudyError that begins with `place`.
+/// Tolerance of the length of a quaternion that was printed with three digits.
+constexpr double kQuaternionPlaceSlack = 2e-3;
+
+/// Normalises the quaternion at the end of the state of a pose in space.
+void normalise_quaternion(Eigen::VectorXd& state, const std::string& place) {
+  const double length = state.tail<4>().norm();
+  if (std::abs(length - 1.0) > kQuaternionPlaceSlack) {
+    throw StudyError(place + ": the quaternion has length " + to_text(length) +
+                     " (of a rotation it is 1): write qx, qy, qz, qw of a unit quaternion");
+  }
+  state.tail<4>() /= length;
+}
+
+/// The number of components of a NIS. Throws StudyError that begins with `place` if `nis` is not a
+/// sum of squares or `dof` is not a count.
+std::uint32_t checked_dof(double nis, double dof, const std::string& place) {
+  constexpr double kMostComponents = 1e6;
+  if (nis >= 0.0 && dof >= 0.0 && dof <= kMostComponents && dof == std::floor(dof)) {
+    return static_cast<std::uint32_t>(dof);
+  }
+  throw StudyError(place + ": nis " + to_text(nis) + " with nis_dof " + to_text(dof) +
+                   " (a sum of squares and its number of components are needed): write 0 "
+                   "and 0 if nothing was observed");
+}
+
+}  // namespace
+
+std::string name_of(StateKind kind) {
+  return kind == StateKind::pose            ? "pose"
+         : kind == StateKind::pose_in_space ? "pose in space"
+                                            : "vector";
+}
+
 EstimateFields estimate_fields(const Names& header, const std::string& place) {
   check_header(header, place);
   Names state;
@@ -206,9 +224,6 @@ EstimateFields estimate_fields(const Names& header, const std::string& place) {
   return fields;
 }
 
-/// Parses the header of innovations: `time_s`, then either `nis` and `nis_dof`, which leave the
-/// other fields empty, or the components of the innovation and their covariance as in a header of
-/// estimates. Throws StudyError that begins with `place`.
 EstimateFields innovation_fields(const Names& header, const std::string& place) {
   EstimateFields fields;
   if (is_same_set(header, {kTimeColumn, kNis, kNisDof})) {
@@ -227,8 +242,6 @@ EstimateFields innovation_fields(const Names& header, const std::string& place) 
   throw StudyError(place + ": a quaternion is no innovation: write its components, e.g. rx_rad");
 }
 
-/// Indices of the state's fields in the header of a truth, which may have further columns. Throws
-/// StudyError that begins with `place`.
 std::vector<std::size_t> truth_fields(const Names& header, const StateShape& shape,
                                       const std::string& place) {
   check_header(header, place);
@@ -242,20 +255,6 @@ std::vector<std::size_t> truth_fields(const Names& header, const StateShape& sha
     fields.push_back(place_of_name(header, column));
   }
   return fields;
-}
-
-/// Tolerance of the length of a quaternion that was printed with three digits.
-constexpr double kQuaternionPlaceSlack = 2e-3;
-constexpr Eigen::Index kQuaternionPlace = 3;  // index of the quaternion, behind x, y, z
-
-/// Normalises the quaternion at the end of the state of a pose in space.
-void normalise_quaternion(Eigen::VectorXd& state, const std::string& place) {
-  const double length = state.tail<4>().norm();
-  if (std::abs(length - 1.0) > kQuaternionPlaceSlack) {
-    throw StudyError(place + ": the quaternion has length " + to_text(length) +
-                     " (of a rotation it is 1): write qx, qy, qz, qw of a unit quaternion");
-  }
-  state.tail<4>() /= length;
 }
 
 Eigen::VectorXd state_in(const CsvRows& rows, const std::vector<std::size_t>& fields,
@@ -279,55 +278,7 @@ Eigen::MatrixXd covariance_in(const CsvRows& rows, const EstimateFields& fields)
   return P;
 }
 
-bool is_angle(const StateShape& shape, Eigen::Index k) {
-  return shape.kind != StateKind::pose_in_space &&
-         shape.units[static_cast<std::size_t>(k)] == "rad";
-}
-
-/// Interpolates from state `a` (`share` = 0) to state `b` (`share` = 1).
-Eigen::VectorXd between(const StateShape& shape, const Eigen::VectorXd& a, const Eigen::VectorXd& b,
-                        double share) {
-  Eigen::VectorXd state = a + share * (b - a);
-  for (Eigen::Index k = 0; k < state.size(); ++k) {
-    if (is_angle(shape, k)) state(k) = wrap(a(k) + share * wrap(b(k) - a(k)));
-  }
-  if (shape.kind == StateKind::pose_in_space) {
-    const Eigen::Quaterniond from(Eigen::Vector4d(a.segment<4>(kQuaternionPlace)));
-    const Eigen::Quaterniond to(Eigen::Vector4d(b.segment<4>(kQuaternionPlace)));
-    state.segment<4>(kQuaternionPlace) = from.slerp(share, to).coeffs();
-  }
-  return state;
-}
-
-namespace fs = std::filesystem;
-
-/// Index of the estimate to which a row of innovations belongs.
-std::size_t place_in(const StateRows& rows, double time, double tolerance, const CsvRows& file,
-                     const fs::path& estimates) {
-  const auto after = std::ranges::lower_bound(rows.time, time);
-  auto k = static_cast<std::size_t>(after - rows.time.begin());
-  if (k == rows.time.size() || (k > 0 && time - rows.time[k - 1] < rows.time[k] - time)) --k;
-  if (std::abs(rows.time[k] - time) <= tolerance) return k;
-  file.refuse("no estimate in " + estimates.string() + " has time " + to_text(time) +
-              " s (the nearest has " + to_text(rows.time[k]) +
-              " s): give innovations the times of the estimates after them, or leave out "
-              "innovations without an estimate");
-}
-
-/// The number of components of a NIS. Throws StudyError that begins with `place` if `nis` is not a
-/// sum of squares or `dof` is not a count.
-std::uint32_t checked_dof(double nis, double dof, const std::string& place) {
-  constexpr double kMostComponents = 1e6;
-  if (nis >= 0.0 && dof >= 0.0 && dof <= kMostComponents && dof == std::floor(dof)) {
-    return static_cast<std::uint32_t>(dof);
-  }
-  throw StudyError(place + ": nis " + to_text(nis) + " with nis_dof " + to_text(dof) +
-                   " (a sum of squares and its number of components are needed): write 0 "
-                   "and 0 if nothing was observed");
-}
-
-/// The NIS of a row and its number of components.
-std::pair<double, std::uint32_t> squares_of(const CsvRows& file, const EstimateFields& fields) {
+std::pair<double, std::uint32_t> nis_in(const CsvRows& file, const EstimateFields& fields) {
   if (fields.nis) {
     const double nis = file.number(*fields.nis, "number");
     return {nis, checked_dof(nis, file.number(*fields.nis_dof, "number"), file.place())};
@@ -338,121 +289,9 @@ std::pair<double, std::uint32_t> squares_of(const CsvRows& file, const EstimateF
   return {sample.value, sample.is_usable() ? static_cast<std::uint32_t>(sample.rank) : dimension};
 }
 
-/// Counts a row of innovations if one of them is an angle beyond pi.
-void count_unwrapped(const CsvRows& file, const EstimateFields& fields, StateRows& rows) {
-  if (fields.nis) return;
-  constexpr double kMost = kPi * (1.0 + 1e-6);  // pi itself may be printed with few digits
-  for (std::size_t k = 0; k < fields.state.size(); ++k) {
-    if (!is_angle(fields.shape, static_cast<Eigen::Index>(k))) continue;
-    const double angle = file.number(fields.state[k], "number");
-    if (std::abs(angle) <= kMost) continue;
-    if (rows.unwrapped_innovations++ > 0) return;
-    rows.first_unwrapped = file.place() + ": " + fields.shape.columns[k] + " " + to_text(angle);
-    return;
-  }
-}
-
-}  // namespace
-
-std::string name_of(StateKind kind) {
-  return kind == StateKind::pose            ? "pose"
-         : kind == StateKind::pose_in_space ? "pose in space"
-                                            : "vector";
-}
-
-StateRows read_estimates(const std::filesystem::path& path) {
-  CsvRows file(path);
-  const EstimateFields fields = estimate_fields(file.columns(), file.place());
-  StateRows rows{fields.shape, {}, {}, {}, {}, {}};
-  while (file.next()) {
-    rows.time.push_back(file.time());
-    rows.state.push_back(state_in(file, fields.state, fields.shape));
-    rows.covariance.push_back(covariance_in(file, fields));
-    if (!fields.nis) continue;
-    const auto [nis, dof] = squares_of(file, fields);
-    rows.nis.push_back(nis);
-    rows.nis_dof.push_back(dof);
-  }
-  return rows;
-}
-
-std::size_t rows_in(const std::filesystem::path& path) {
-  CsvRows file(path);
-  std::size_t rows = 0;
-  while (file.next()) ++rows;
-  return rows;
-}
-
-StateRows read_truth(const std::filesystem::path& path, const StateShape& shape) {
-  CsvRows file(path);
-  const std::vector<std::size_t> fields = truth_fields(file.columns(), shape, file.place());
-  StateRows rows{shape, {}, {}, {}, {}, {}};
-  while (file.next()) {
-    rows.time.push_back(file.time());
-    rows.state.push_back(state_in(file, fields, shape));
-  }
-  file.require_some();
-  return rows;
-}
-
-Eigen::VectorXd truth_at(const StateRows& truth, double time, const TimeMatch& match,
-                         const std::filesystem::path& estimate,
-                         const std::filesystem::path& truths) {
-  const auto after = std::ranges::lower_bound(truth.time, time);
-  const auto right = static_cast<std::size_t>(after - truth.time.begin());
-  const bool has_left = right > 0, has_right = right < truth.time.size();
-  const double to_left = has_left ? time - truth.time[right - 1] : INFINITY;
-  const double to_right = has_right ? truth.time[right] - time : INFINITY;
-  if (std::min(to_left, to_right) <= match.tolerance) {
-    return truth.state[to_right <= to_left ? right : right - 1];
-  }
-  if (match.interpolate && has_left && has_right) {
-    return between(truth.shape, truth.state[right - 1], truth.state[right],
-                   to_left / (to_left + to_right));
-  }
-  throw StudyError(estimate.string() + ": time " + to_text(time) + " s has no truth in " +
-                   truths.string() + " (the nearest is " + to_text(std::min(to_left, to_right)) +
-                   " s away, --tolerance is " + to_text(match.tolerance) + " s): " +
-                   (has_left && has_right
-                        ? "give truths at the times of the estimates, or use --interpolate, or a "
-                          "larger --tolerance if times have few digits"
-                        : "leave out estimates outside of the truth, or use a larger --tolerance "
-                          "if times have few digits"));
-}
-
-std::optional<fs::path> innovations_beside(const fs::path& estimates) {
-  const std::string wanted = "estimate";
-  std::string name = estimates.filename().string();
-  const std::size_t at = name.rfind(wanted);
-  if (at == std::string::npos) return std::nullopt;
-  name.replace(at, wanted.size(), "innovation");
-  fs::path beside = estimates.parent_path() / fs::path(name).replace_extension(".csv");
-  std::error_code ignored;
-  if (!fs::is_regular_file(beside, ignored)) return std::nullopt;
-  return beside;
-}
-
-void read_innovations(const fs::path& path, const fs::path& estimates, double tolerance,
-                      StateRows& rows) {
-  if (!rows.nis.empty()) {
-    throw StudyError(path.string() + ": innovations, and " + estimates.string() +
-                     " has nis too (which one is it?): remove one");
-  }
-  CsvRows file(path);
-  const EstimateFields fields = innovation_fields(file.columns(), file.place());
-  std::vector<double> nis(rows.time.size());
-  std::vector<std::uint32_t> dof(rows.time.size());
-  while (file.next()) {
-    const double time = file.time(CsvRows::Order::not_earlier);
-    const auto [row_nis, row_dof] = squares_of(file, fields);
-    count_unwrapped(file, fields, rows);
-    if (rows.time.empty()) continue;
-    const std::size_t k = place_in(rows, time, tolerance, file, estimates);
-    nis[k] += row_nis;
-    dof[k] += row_dof;
-  }
-  rows.nis = std::move(nis);
-  rows.nis_dof = std::move(dof);
+bool is_angle(const StateShape& shape, Eigen::Index k) {
+  return shape.kind != StateKind::pose_in_space &&
+         shape.units[static_cast<std::size_t>(k)] == "rad";
 }
 
 }  // namespace montecarta::experiments

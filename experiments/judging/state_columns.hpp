@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/namespaces.hpp"
+#include "experiments/files/files.hpp"
 
 #include <Eigen/Core>
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace montecarta::experiments {
@@ -35,51 +35,49 @@ struct StateShape {
   bool operator==(const StateShape&) const = default;
 };
 
-/// Estimates or truths of one run, as read from a file.
-struct StateRows {
+/// Indices of the fields in a row of a file of estimates.
+struct EstimateFields {
   StateShape shape;
-  std::vector<double> time;                 ///< [s] {row}, increasing
-  std::vector<Eigen::VectorXd> state;       ///< {row}{width}, quaternions of length 1
-  std::vector<Eigen::MatrixXd> covariance;  ///< {row}{d, d} as in the file; empty for a truth
-  std::vector<double> nis;                  ///< {row} empty if the file has none
-  std::vector<std::uint32_t> nis_dof;       ///< {row} empty if the file has none
-  std::uint64_t unwrapped_innovations = 0;  ///< number of innovations with an angle beyond pi
-  std::string first_unwrapped = {};         ///< file and line of the first of them
+  std::vector<std::size_t> state;       ///< {width} fields of the state
+  std::vector<std::size_t> covariance;  ///< {d, d} fields; from a triangle, elements occur twice
+  std::optional<std::size_t> nis, nis_dof;  ///< both are present or neither
 };
 
-/// Reads estimates (mean and covariance over time) from CSV. Throws StudyError with file, line and
-/// remedy if the file is empty or damaged, or a number is not finite.
-StateRows read_estimates(const std::filesystem::path& path);
+/// Name of the first column of every file.
+inline const std::string kTimeColumn = "time_s";
 
-/// Number of rows in a file.
-std::size_t rows_in(const std::filesystem::path& path);
+/// Parses the header of estimates: `time_s`, the state, then `cov_A_B`, where A and B are names of
+/// components or indices from 0, for the whole covariance or one triangle, and optionally `nis` and
+/// `nis_dof`. Throws StudyError that begins with `place`.
+EstimateFields estimate_fields(const std::vector<std::string>& header, const std::string& place);
 
-/// Reads a truth of the same state; other columns are ignored. Throws like read_estimates().
-StateRows read_truth(const std::filesystem::path& path, const StateShape& shape);
+/// Parses the header of innovations: `time_s`, then either `nis` and `nis_dof`, which leave the
+/// other fields empty, or the components of the innovation and their covariance as in a header of
+/// estimates. Throws StudyError that begins with `place`.
+EstimateFields innovation_fields(const std::vector<std::string>& header, const std::string& place);
 
-/// The method that finds the truth at the time of an estimate.
-struct TimeMatch {
-  double tolerance = 1e-6;   ///< [s] largest difference of times that are the same
-  bool interpolate = false;  ///< whether to interpolate linearly, with angles the shorter way round
-};
+/// Indices of the state's fields in the header of a truth, which may have further columns. Throws
+/// StudyError that begins with `place`.
+std::vector<std::size_t> truth_fields(const std::vector<std::string>& header,
+                                      const StateShape& shape, const std::string& place);
 
-/// The state of `truth` at `time`. Throws StudyError if there is none; the error names the files
-/// `estimate` and `truths`.
-Eigen::VectorXd truth_at(const StateRows& truth, double time, const TimeMatch& match,
-                         const std::filesystem::path& estimate,
-                         const std::filesystem::path& truths);
+/// The state {width} in the current row. Throws StudyError if a number is not finite or a
+/// quaternion is not of a rotation.
+Eigen::VectorXd state_in(const CsvRows& rows, const std::vector<std::size_t>& fields,
+                         const StateShape& shape);
 
-/// The file of innovations beside a file of estimates. Its name has `innovation` instead of
-/// `estimate`, e.g. innovation_ekf.csv for estimate_ekf.csv. nullopt if it does not exist.
-std::optional<std::filesystem::path> innovations_beside(const std::filesystem::path& estimates);
+/// The covariance {d, d} in the current row, as in the file. Throws StudyError if a number is not
+/// finite.
+Eigen::MatrixXd covariance_in(const CsvRows& rows, const EstimateFields& fields);
 
-/// Reads innovations into `rows`, which holds the estimates of the file `estimates`. The file is
-/// CSV with `time_s`, then either `nis,nis_dof`, or the components of the innovation and cov_A_B of
-/// their covariance, as in a file of estimates. Rows with the same time are parts of one scan and
-/// are added up. Estimates without a row have observed nothing. The NIS is NaN if the covariance is
-/// not positive definite. Angles beyond pi are used as they are, and counted. Throws StudyError
-/// with file, line and remedy, also if no estimate has the time of a row within `tolerance` [s].
-void read_innovations(const std::filesystem::path& path, const std::filesystem::path& estimates,
-                      double tolerance, StateRows& rows);
+/// The NIS of the current row and its number of components. Throws StudyError if they are given and
+/// are no sum of squares and its count.
+std::pair<double, std::uint32_t> nis_in(const CsvRows& file, const EstimateFields& fields);
+
+/// Whether element `k` of a state is an angle, which is the same after a full turn.
+bool is_angle(const StateShape& shape, Eigen::Index k);
+
+/// Index of the quaternion in the state of a pose in space, behind x, y, z.
+inline constexpr Eigen::Index kQuaternionPlace = 3;
 
 }  // namespace montecarta::experiments

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Damaged studies, worlds, estimates and recorded drives: read, or refused with the name of the
 // file.
-#include "experiments/judging/state_columns.hpp"
+#include "experiments/judging/innovation_rows.hpp"
 #include "experiments/recordings/drive_log.hpp"
 #include "experiments/recordings/log_csv.hpp"
 #include "experiments/study/study.hpp"

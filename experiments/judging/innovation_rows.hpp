@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "experiments/judging/state_rows.hpp"
+
+#include <filesystem>
+#include <optional>
+
+namespace montecarta::experiments {
+
+/// The file of innovations beside a file of estimates. Its name has `innovation` instead of
+/// `estimate`, e.g. innovation_ekf.csv for estimate_ekf.csv. nullopt if it does not exist.
+std::optional<std::filesystem::path> innovations_beside(const std::filesystem::path& estimates);
+
+/// Reads innovations into `rows`, which holds the estimates of the file `estimates`. The file is
+/// CSV with `time_s`, then either `nis,nis_dof`, or the components of the innovation and cov_A_B of
+/// their covariance, as in a file of estimates. Rows with the same time are parts of one scan and
+/// are added up. Estimates without a row have observed nothing. The NIS is NaN if the covariance is
+/// not positive definite. Angles beyond pi are used as they are, and counted. Throws StudyError
+/// with file, line and remedy, also if no estimate has the time of a row within `tolerance` [s].
+void read_innovations(const std::filesystem::path& path, const std::filesystem::path& estimates,
+                      double tolerance, StateRows& rows);
+
+}  // namespace montecarta::experiments
