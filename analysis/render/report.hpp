@@ -10,7 +10,7 @@
 
 namespace montecarta::analysis {
 
-/// The treatment of a report that is already there.
+/// What write_report() does if the directory already holds a report.
 enum class ExistingReport { refuse, replace };
 
 struct ReportOptions {

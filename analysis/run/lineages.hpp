@@ -98,12 +98,13 @@ class LineageWalker {
 /// [s] Age of the ancestors in Diversity::lag (STATISTICS 14).
 inline constexpr double kDiversityLag = 10.0;
 
-/// {scan} Numbers of distinct ancestors of the particles of one run.
+/// Numbers of distinct ancestors of the particles of one run at every scan.
 struct Diversity {
-  /// Number of parents in the last resampling before the scan.
+  /// {scan} number of parents in the last resampling before the scan.
   std::vector<std::uint32_t> last_resampling;
-  std::vector<std::uint32_t> lag;   ///< number of ancestors kDiversityLag earlier, or at the start
-  std::vector<std::uint32_t> root;  ///< number of ancestors at the start; never grows
+  /// {scan} number of ancestors kDiversityLag earlier, or at the start if that is later.
+  std::vector<std::uint32_t> lag;
+  std::vector<std::uint32_t> root;  ///< {scan} number of ancestors at the start, which never grows
 };
 
 /// Counts ancestors along a genealogy. The object keeps its memory from run to run.
@@ -133,11 +134,12 @@ class DiversityCounter {
   Row ancestor_;
   std::size_t particles_ = 0;
   Diversity result_;
-  std::vector<std::size_t> resampled_;   ///< {scan} result of find_resamplings()
-  AncestorSet set_;                      ///< ancestors during the walk back
-  std::vector<ResamplingStep> path_;     ///< resamplings back from the last one, the latest first
-  std::vector<std::uint32_t> root_;      ///< {particle} ancestor at the start
-  std::vector<std::uint32_t> previous_;  ///< root_ one resampling earlier
+  std::vector<std::size_t> resampled_;  ///< {scan} result of find_resamplings()
+  AncestorSet set_;                     ///< ancestors during the walk back
+  std::vector<ResamplingStep> path_;    ///< resamplings back from the last one, the latest first
+  std::vector<std::uint32_t> root_;     ///< {particle} ancestor at the start
+  /// {particle} ancestor at the start, as it was one resampling earlier.
+  std::vector<std::uint32_t> previous_;
 };
 
 }  // namespace montecarta::analysis

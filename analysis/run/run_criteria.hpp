@@ -18,14 +18,14 @@ namespace montecarta::analysis {
 
 /// Criteria for a run on a drive of its own.
 struct DriveCriteria {
-  std::span<const double> times;          ///< [s] {scan}
-  std::vector<PathAtFixes> references;    ///< as many as in RunCriteria
-  std::vector<PathAtFixes> judged_fixes;  ///< as many as in RunCriteria
+  std::span<const double> times;          ///< [s] {scan} time of each scan
+  std::vector<PathAtFixes> references;    ///< {reference} its fixes on this drive
+  std::vector<PathAtFixes> judged_fixes;  ///< {reference with known errors} its fixes on this drive
 };
 
 /// Criteria for runs, common to all cells of a file. The file must outlive them.
 struct RunCriteria {
-  std::span<const double> times;  ///< [s] {scan}
+  std::span<const double> times;  ///< [s] {scan} time of each scan
   double level = kUsualLevel;     ///< level of NEES bounds and tests
   double within = kUsualMargin;   ///< margin of the verdict (judge())
   std::vector<PathAtFixes> references;

@@ -78,20 +78,23 @@ struct RunRows {
   std::vector<double> truth;  ///< {scan, 3} [m, m, rad]; empty if unknown
   MomentRows spread;          ///< mean always stored, except in files of states that are no poses
   MomentRows mixture;
-  std::vector<double> ess;                      ///< {scan}
-  std::vector<std::uint32_t> resampled;         ///< {scan} 0 or 1
-  std::vector<std::uint32_t> numerical_faults;  ///< {scan}
-  std::vector<std::uint32_t> ancestor;          ///< {scan, particle}
-  std::vector<double> particle_pose;            ///< {scan, particle, 3} [m, m, rad]
-  std::vector<double> log_weight;               ///< {scan, particle} normalised
-  std::vector<double> nis;                      ///< {scan}
-  std::vector<std::uint32_t> nis_dof;           ///< {scan}
+  std::vector<double> ess;               ///< {scan} effective sample size
+  std::vector<std::uint32_t> resampled;  ///< {scan} 1 if the filter resampled at the scan, else 0
+  /// {scan} number of factorisations that needed a fallback.
+  std::vector<std::uint32_t> numerical_faults;
+  /// {scan, particle} index of the parent among the particles one scan ago.
+  std::vector<std::uint32_t> ancestor;
+  std::vector<double> particle_pose;   ///< {scan, particle, 3} [m, m, rad] pose of each particle
+  std::vector<double> log_weight;      ///< {scan, particle} logarithm of the normalised weight
+  std::vector<double> nis;             ///< {scan} normalised innovation squared (NIS)
+  std::vector<std::uint32_t> nis_dof;  ///< {scan} number of degrees of freedom of the NIS
   AssociationRows association;
   /// {row, 3} [m, m, rad] leading mean, also between scans; empty without references.
   std::vector<double> path;
-  std::vector<double> map_size;              ///< {scan} number of landmarks in the map
-  std::vector<double> rotation_information;  ///< [1/rad^2] {scan}; empty if not stored
-  std::optional<FinalMap> final_map;         ///< map at the last scan, if stored and whole
+  std::vector<double> map_size;  ///< {scan} number of landmarks in the map
+  /// {scan} [1/rad^2] information about the heading of path and map; empty if not stored.
+  std::vector<double> rotation_information;
+  std::optional<FinalMap> final_map;  ///< map at the last scan, if stored and whole
   JointRows joint;
   ErrorRows error;        ///< errors of imported estimates
   std::uint64_t run = 0;  ///< number of the run in the study

@@ -66,11 +66,11 @@ std::vector<std::string> cautions(std::span<const CellAnalysis> cells,
 /// The runs of a cell in words: "40 complete", "2 FAILED, 38 complete", ...
 std::string runs_in_words(const CellAnalysis& cell);
 
-/// Consistent is good news; optimistic and inconsistent are bad news.
+/// Tone of an answer: consistent is good news; optimistic and inconsistent are bad news.
 Tone tone_of(Answer answer);
-/// The same, except that a slight deviation is neither.
+/// Tone of the answer of a verdict, except that a slight deviation is neither good nor bad news.
 Tone tone_of(const Verdict& verdict);
-/// Failed runs are bad news.
+/// Tone of the number of runs of a cell: failed runs are bad news.
 Tone tone_of_runs(const CellAnalysis& cell);
 
 std::string name_of(ErrorBlock block);

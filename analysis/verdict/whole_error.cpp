@@ -30,7 +30,7 @@ std::vector<std::size_t> ends_of_stretches(std::size_t scans) {
   return ends;
 }
 
-/// {number} Means of one run in single stretches and over the whole drive.
+/// Means of several numbers of one run, in each stretch and over the whole drive.
 class Means {
  public:
   explicit Means(std::size_t numbers) : whole_(numbers), stretch_(numbers) {}

@@ -23,7 +23,7 @@ struct ReplayParticles {
     /// {particle shown} index of its parent in `shown` of the frame before; empty if no ancestry is
     /// stored, and in the first frame.
     std::vector<std::uint32_t> parent;
-    std::vector<double> x, y;  ///< [m]
+    std::vector<double> x, y;  ///< [m] {particle shown} position
     /// Weight divided by the largest of the frame; empty if not stored.
     std::vector<double> weight;
   };
@@ -72,10 +72,12 @@ struct Replay {
 
 /// The stored data of a cell's particles in one run.
 struct StoredParticles {
-  std::size_t count = 0;                    ///< number of particles
-  std::span<const double> pose;             ///< {scan, particle, 3}
-  std::span<const std::uint32_t> ancestor;  ///< {scan, particle}; empty if not stored
-  std::span<const double> log_weight = {};  ///< {scan, particle}; empty if not stored
+  std::size_t count = 0;         ///< number of particles
+  std::span<const double> pose;  ///< {scan, particle, 3} [m, m, rad] poses
+  /// {scan, particle} indices of the parents; empty if not stored.
+  std::span<const std::uint32_t> ancestor;
+  /// {scan, particle} logarithms of the weights; empty if not stored.
+  std::span<const double> log_weight = {};
 };
 
 /// Chooses at most `most` particles for each frame; `scans`, increasing, are those of the frames.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The last moment of a replay as a drawing: what page/script/panel.js shows of each cell.
+// Draws the last moment of a replay as page/script/panel.js shows it for each cell.
 #include "analysis/render/page/replay/replay_still.hpp"
 
 #include "analysis/render/page/html.hpp"
@@ -80,8 +80,8 @@ struct View {
   }
 };
 
-/// Bounds of the drive; those of the estimates only if nothing else is known, since a filter may be
-/// lost.
+/// Returns bounds of the drive. Those of the estimates are used only if nothing else is known,
+/// because a filter may be lost.
 Bounds bounds_of(const Replay& replay) {
   Bounds bounds;
   for (std::size_t f = 0; f < replay.x.size(); ++f) bounds.include(replay.x[f], replay.y[f]);
