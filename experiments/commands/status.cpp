@@ -64,7 +64,7 @@ void print(const StudyStatus& study) {
   std::cout << aligned(without_idle_not_needed(std::move(rows)), 0);
 }
 
-/// The depth of the check of a file.
+/// How thoroughly a file is checked.
 enum class Depth { statuses, every_byte };
 
 /// A sentence such as "run 7 is damaged" about the first stored run that does not match its

@@ -41,8 +41,9 @@ struct StateRows {
   std::vector<double> time;                 ///< [s] {row}, increasing
   std::vector<Eigen::VectorXd> state;       ///< {row}{width}, quaternions of length 1
   std::vector<Eigen::MatrixXd> covariance;  ///< {row}{d, d} as in the file; empty for a truth
-  std::vector<double> nis;                  ///< {row} empty if the file has none
-  std::vector<std::uint32_t> nis_dof;       ///< {row} empty if the file has none
+  std::vector<double> nis;  ///< {row} normalised innovation squared; empty if the file has none
+  /// {row} number of components of each NIS; empty if the file has none.
+  std::vector<std::uint32_t> nis_dof;
   std::uint64_t unwrapped_innovations = 0;  ///< number of innovations with an angle beyond pi
   std::string first_unwrapped = {};         ///< file and line of the first of them
 };
