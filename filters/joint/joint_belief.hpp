@@ -43,7 +43,7 @@ class JointBelief {
   PoseMoments pose_after(const MotionIncrement& motion) const;
   /// Number of landmarks in the map.
   std::size_t landmarks() const { return point_of_.size(); }
-  /// Landmark k: the one of identity k with known association, else the k-th initialised.
+  /// Returns landmark k: the one of identity k with known association, else the k-th initialised.
   std::optional<LandmarkEstimate> landmark(std::size_t k) const;
   /// Pose and landmarks 0 to `landmarks` - 1; NaN for landmarks that the map does not have.
   JointEstimate joint(std::size_t landmarks) const;

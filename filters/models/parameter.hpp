@@ -22,10 +22,10 @@ struct Parameter {
   Kind kind = Kind::text;
   std::string unit = {};                     ///< "" for none
   std::optional<std::string> fallback = {};  ///< default value as text; nullopt: must be set
-  double least = 0.0;                        ///< inclusive, like `most`
+  double least = 0.0;                        ///< least value, inclusive like `most`
   double most = 0.0;
   std::vector<std::string> choices = {};
-  std::string meaning = {};  ///< one line, with equation
+  std::string meaning = {};  ///< explanation in one line, with equation
   std::string example = {};  ///< suggested by the error if the user must set it
   /// The default of a filter's option if the controls are noisy measurements of the true ones
   /// (scenario.noise = measured-control), where it differs.
@@ -45,7 +45,7 @@ Parameter choice_parameter(const char* key, const std::string& fallback,
 enum class Quantity : std::uint8_t {
   range,
   bearing,
-  forward,  ///< position of a landmark
+  forward,  ///< forward and left: position of a landmark relative to the sensor
   left,
   speed,
   steer,

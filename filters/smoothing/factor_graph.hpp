@@ -44,10 +44,10 @@ class FactorGraph {
 
  private:
   Pose start_;
-  std::vector<MotionIncrement> motions_;   ///< {pose}
-  std::vector<std::size_t> begin_;         ///< {pose} and one more
-  std::vector<Observation> observations_;  ///< those of all poses, in order
-  std::vector<std::size_t> first_pose_;    ///< {landmark}
+  std::vector<MotionIncrement> motions_;   ///< {pose} motion from the pose before
+  std::vector<std::size_t> begin_;         ///< {pose} index of its first observation, and one more
+  std::vector<Observation> observations_;  ///< observations of all poses, in order
+  std::vector<std::size_t> first_pose_;    ///< {landmark} pose that observed it first
 };
 
 /// An estimate of all poses and landmarks in relative coordinates: displacements from pose to pose,
@@ -65,7 +65,8 @@ struct GraphEstimate {
   std::vector<Point> landmarks;  ///< {landmark} in the map frame [m]
 
   void clear();
-  /// Add the newest pose, and a landmark that it observed first, given in the map frame.
+  /// These functions add the newest pose, and a landmark that it observed first, given in the map
+  /// frame.
   void add_pose(const FactorGraph& graph, const Pose& pose);
   void add_landmark(const Point& landmark);
   /// Computes poses and landmarks in the map frame from the relative coordinates.

@@ -36,7 +36,7 @@ class PosesGivenMap {
 
   void step_backwards(const Elimination& elimination, Eigen::Index rows);
 
-  std::vector<LaplaceStep> steps_;  ///< {segment}
+  std::vector<LaplaceStep> steps_;  ///< {segment} step to the last pose of the segment
   MapMoments map_;
 };
 
@@ -62,7 +62,7 @@ class RelativeLaplace {
   std::vector<std::size_t> frames_;  ///< poses of the frames
   std::size_t newest_ = 0;           ///< index of the newest pose
   RelativeChain chain_;
-  std::vector<RelativeChain::Point> points_;  ///< {landmark}
+  std::vector<RelativeChain::Point> points_;  ///< {landmark} coordinates of the landmark
   Eigen::VectorXd mean_;
   std::vector<Eigen::Triplet<double>> by_map_;  ///< derivatives of the coordinates by poses and map
   PosesGivenMap poses_given_map_;
