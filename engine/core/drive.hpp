@@ -52,8 +52,8 @@ using Scan = std::span<const Detection>;
 struct ReferencePath {
   std::string name;                       ///< for instance "gps"
   std::vector<double> time;               ///< [s] {fix} increasing
-  std::vector<Eigen::Vector2d> position;  ///< [m] {fix}
-  std::vector<double> heading;            ///< [rad] {fix} empty if it is not measured
+  std::vector<Eigen::Vector2d> position;  ///< [m] {fix} measured position
+  std::vector<double> heading;  ///< [rad] {fix} measured heading; empty if it is not measured
   /// {fix} covariance of the error, (m, m, rad)^2; empty if it is not known. Without headings, only
   /// the block of the position counts.
   std::vector<Eigen::Matrix3d> covariance = {};
