@@ -10,7 +10,7 @@
 
 namespace montecarta::analysis {
 
-/// What write_report() does if the directory already holds a report.
+/// The behaviour of write_report() if the directory already holds a report.
 enum class ExistingReport { refuse, replace };
 
 struct ReportOptions {

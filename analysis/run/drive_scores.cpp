@@ -31,7 +31,7 @@ struct ScanBelief {
 
 /// Means and covariances of the pose after all scans.
 struct ScanBeliefs {
-  std::vector<double> mean;  ///< {scan, 3} [m, m, rad]
+  std::vector<double> mean;  ///< {scan, 3} [m, m, rad] means of the pose
   std::vector<ScanBelief> beliefs;
 };
 

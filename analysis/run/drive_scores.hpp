@@ -27,7 +27,7 @@ struct FixErrors {
   VectorSeries whitened;
   VectorSeries by_reference;  ///< {component}{fix judged} errors in units of R alone
   std::vector<double> nees;   ///< {fix judged} NEES
-  std::vector<double> times;  ///< [s] {fix judged}
+  std::vector<double> times;  ///< [s] {fix judged} time of each fix
   /// Number of fixes left out because the scans around them are over kLongestScanGap apart.
   std::size_t in_gaps = 0;
   std::size_t undefined = 0;  ///< number of fixes left out: no finite covariance, or too few draws

@@ -91,8 +91,9 @@ class LineageWalker {
   double family_variance(const RunRows& rows, std::size_t s);
 
   AncestorSet set_;
-  std::vector<std::uint32_t> ancestor_;  ///< {particle of the first scan of the walk} ancestor
-  std::vector<double> families_;         ///< {ancestor, 2} weighted deviation of its descendants
+  /// {particle of the first scan of the walk} ancestor at the present scan.
+  std::vector<std::uint32_t> ancestor_;
+  std::vector<double> families_;  ///< {ancestor, 2} weighted deviation of its descendants
 };
 
 /// [s] Age of the ancestors in Diversity::lag (STATISTICS 14).

@@ -16,7 +16,7 @@ namespace montecarta::analysis {
 /// A rotation of the plane followed by a translation.
 struct RigidMotion {
   double angle = 0.0;                               ///< [rad] counter-clockwise
-  Eigen::Vector2d shift = Eigen::Vector2d::Zero();  ///< [m]
+  Eigen::Vector2d shift = Eigen::Vector2d::Zero();  ///< [m] translation
 
   Eigen::Vector2d operator()(const Eigen::Vector2d& point) const;
 };

@@ -17,8 +17,8 @@ namespace montecarta::analysis {
 /// of the world, else the order of initialisation.
 struct FinalMap {
   std::vector<std::uint32_t> seen;          ///< {landmark} 1 if it is in the map
-  std::vector<Eigen::Vector2d> mean;        ///< [m] {landmark}
-  std::vector<Eigen::Matrix2d> covariance;  ///< [m^2] {landmark}
+  std::vector<Eigen::Vector2d> mean;        ///< [m] {landmark} estimated position
+  std::vector<Eigen::Matrix2d> covariance;  ///< [m^2] {landmark} covariance of the position
 
   /// [m] positions of the landmarks that are in the map.
   std::vector<Eigen::Vector2d> places() const {
@@ -32,20 +32,21 @@ struct FinalMap {
 
 /// Mean and covariance of the pose at every scan of one run; empty if not stored.
 struct MomentRows {
-  std::vector<double> mean;        ///< {scan, 3} [m, m, rad]
-  std::vector<double> covariance;  ///< {scan, 3, 3}
+  std::vector<double> mean;        ///< {scan, 3} [m, m, rad] mean of the pose
+  std::vector<double> covariance;  ///< {scan, 3, 3} covariance of the pose
 };
 
 /// Counts of the associations of every scan (AssociationCounts); empty where not stored.
 struct AssociationRows {
-  std::vector<double> correct, wrong, new_again, missed, clutter;  ///< {scan}
+  /// {scan} number of associations of each kind.
+  std::vector<double> correct, wrong, new_again, missed, clutter;
 };
 
 /// Estimate of pose and map together at the scans of ResultDescription::joint_scans; empty if not
 /// stored.
 struct JointRows {
-  std::vector<double> mean;        ///< {joint scan, state}; NaN for landmarks never seen
-  std::vector<double> covariance;  ///< {joint scan, state, state}
+  std::vector<double> mean;        ///< {joint scan, state} mean; NaN for landmarks never seen
+  std::vector<double> covariance;  ///< {joint scan, state, state} covariance
 
   std::size_t states() const { return mean.empty() ? 0 : covariance.size() / mean.size(); }
 };
@@ -53,8 +54,8 @@ struct JointRows {
 /// Errors of an imported estimate at every scan, in the convention that its file states; empty
 /// where not stored.
 struct ErrorRows {
-  std::vector<double> value;       ///< {scan, component}
-  std::vector<double> covariance;  ///< {scan, component, component} as imported
+  std::vector<double> value;       ///< {scan, component} error of the estimate
+  std::vector<double> covariance;  ///< {scan, component, component} covariance as imported
   /// {kErrorConventions}{scan} NEES if the covariance belonged to the error of that convention;
   /// empty if not stored.
   std::array<std::vector<double>, kErrorConventions.size()> nees_by;

@@ -146,7 +146,7 @@ Figure figure_of(std::string_view name, const Values& values = {});
 /// Kind of the vertical axis.
 enum class Scale {
   from_zero,
-  percent,  ///< 0 to 100
+  percent,  ///< from 0 to 100
   logarithmic,
   automatic,   ///< logarithmic if the values span more than a factor of 30, else from zero
   around_zero  ///< zero is in the middle

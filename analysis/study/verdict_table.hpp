@@ -85,7 +85,7 @@ struct MeanText {
   std::string mean;    ///< mean with its interval, or alone if the scores have a heavy tail
   std::string median;  ///< median with its median_interval() if they have a heavy tail, else empty
 
-  /// Both in one text: "0.29 [0.22, 0.37]", "3.1 (heavy tail), median 0.4 [0.3, 0.6]".
+  /// Text of mean and median: "0.29 [0.22, 0.37]", "3.1 (heavy tail), median 0.4 [0.3, 0.6]".
   std::string text() const;
 };
 

@@ -136,8 +136,9 @@ class InnovationSums {
     void judge_size(std::span<const double> times, double level, double within,
                     Innovations& result) const;
 
-    SummedError nis_;                 ///< {scan} sums of the NIS
-    std::vector<Products> products_;  ///< {lag} from 0
+    SummedError nis_;  ///< {scan} sums of the NIS
+    /// {lag from 0} sums over pairs of scans that are that far apart.
+    std::vector<Products> products_;
     /// {scan} deviations of the run that is added, the last scan first, and 1 where there is a
     /// deviation.
     std::vector<double> deviations_, is_there_;

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kFewestKeptRuns = 50, kMostKeptRuns = 256;
 
-constexpr std::size_t kMostKeptErrors = 8'000'000;  // 64 MB
+constexpr std::size_t kMostKeptErrors = 8'000'000;  // largest number of errors that are kept, 64 MB
 
 /// The fewest errors in which a repeat is detected. Shorter sequences may be equal by chance, since
 /// files have few digits.

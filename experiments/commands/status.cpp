@@ -17,7 +17,7 @@ namespace {
 struct StudyStatus {
   std::string sha256;
   std::vector<std::string> labels;
-  std::vector<std::vector<RunStatus>> runs;  ///< {cell}{run of the study}
+  std::vector<std::vector<RunStatus>> runs;  ///< {cell}{run of the study} status of each run
 };
 
 /// Adds the statuses of all groups. It does not matter here which runs of a group failed.

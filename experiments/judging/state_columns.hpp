@@ -38,9 +38,10 @@ struct StateShape {
 /// Estimates or truths of one run, as read from a file.
 struct StateRows {
   StateShape shape;
-  std::vector<double> time;                 ///< [s] {row}, increasing
-  std::vector<Eigen::VectorXd> state;       ///< {row}{width}, quaternions of length 1
-  std::vector<Eigen::MatrixXd> covariance;  ///< {row}{d, d} as in the file; empty for a truth
+  std::vector<double> time;            ///< [s] {row} time, increasing
+  std::vector<Eigen::VectorXd> state;  ///< {row}{width}, quaternions of length 1
+  /// {row}{d, d} covariance as in the file; empty for a truth.
+  std::vector<Eigen::MatrixXd> covariance;
   std::vector<double> nis;  ///< {row} normalised innovation squared; empty if the file has none
   /// {row} number of components of each NIS; empty if the file has none.
   std::vector<std::uint32_t> nis_dof;

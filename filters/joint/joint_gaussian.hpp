@@ -53,7 +53,7 @@ struct ExpectedObservation {
   Matrix23 pose_jacobian;
   Eigen::Matrix2d landmark_jacobian;
   Eigen::Vector2d observation;  ///< predicted at the point of linearisation
-  InnovationFactor factor;      ///< factor of S
+  InnovationFactor factor;      ///< Cholesky factor of S
   /// H times the step from the estimate to the point of linearisation; not wrapped.
   Eigen::Vector2d ahead = Eigen::Vector2d::Zero();
   Wraps wraps = {false, true};  ///< angles among the components

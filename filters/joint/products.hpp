@@ -123,10 +123,10 @@ class BlockedCholesky {
   /// Number of rows of A.
   Eigen::Index rows() const { return n_; }
 
-  /// b <- A^-1 b.
+  /// Replaces b by A^-1 b.
   void solve_in_place(Eigen::VectorXd& b) const;
 
-  /// P = A^-1.
+  /// Writes A^-1 to P.
   void inverse(Eigen::Ref<Eigen::MatrixXd> P) const;
 
  private:

@@ -33,7 +33,7 @@ inline Eigen::Matrix2d exponential_jacobian(double turn) {
 /// J, the rotation by 90 degrees; J p is the displacement of p per rad of a rotation of the plane.
 inline Eigen::Matrix2d quarter_turn() { return Eigen::Matrix2d{{0.0, -1.0}, {1.0, 0.0}}; }
 
-/// J p.
+/// Returns J p.
 inline Eigen::Vector2d quarter_turned(const Eigen::Vector2d& p) { return {-p.y(), p.x()}; }
 
 /// Multiplies every column by A.

@@ -43,7 +43,7 @@ struct Belief {
   double sigma_bearing = 0.02;                 ///< [rad] standard deviation of a bearing
   double sigma_forward = 0.1;  ///< [m] standard deviation of a position, forward of the sensor
   double sigma_left = 0.1;     ///< [m] standard deviation of a position, left of the sensor
-  Sensor sensor = {};          ///< its components determine which of these four are used
+  Sensor sensor = {};          ///< its components determine which of the four above are used
 };
 
 enum class Association { known, nearest };

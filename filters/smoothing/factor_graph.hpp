@@ -54,15 +54,15 @@ class FactorGraph {
 /// and landmarks in the frame of the pose that observed them first. A step in these moves all later
 /// poses rigidly, whereas a step in the map frame breaks the path where a loop closes.
 struct GraphEstimate {
-  std::vector<Pose> displacements;  ///< {pose} in the frame of the pose before
-  std::vector<Point> in_frame;      ///< {landmark} in the frame of its first pose [m]
+  std::vector<Pose> displacements;  ///< {pose} displacement in the frame of the pose before
+  std::vector<Point> in_frame;      ///< {landmark} [m] position in the frame of its first pose
   /// {pose} m of displacement = mean + covariance m, for all but the newest poses. The Gauss-Newton
   /// step computes it without the inverse of a covariance.
   std::vector<Eigen::Vector3d> multipliers;
-  std::vector<Pose> poses;  ///< {pose} in the map frame
+  std::vector<Pose> poses;  ///< {pose} pose in the map frame
   /// {pose} direction of the heading of the pose before.
   std::vector<Direction<double>> directions;
-  std::vector<Point> landmarks;  ///< {landmark} in the map frame [m]
+  std::vector<Point> landmarks;  ///< {landmark} [m] position in the map frame
 
   void clear();
   /// These functions add the newest pose, and a landmark that it observed first, given in the map

@@ -31,7 +31,7 @@ class PosesGivenMap {
   struct LaplaceStep {
     Eigen::Matrix3d transition;
     Eigen::Matrix3d covariance;
-    Rows by_landmarks;  ///< {row of l, 3}
+    Rows by_landmarks;  ///< {row of l, 3} derivatives by the landmarks
   };
 
   void step_backwards(const Elimination& elimination, Eigen::Index rows);

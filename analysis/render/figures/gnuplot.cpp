@@ -461,7 +461,7 @@ std::string strip_key(const ChartStrips& strips, const PanelBox& box, double wid
 }  // namespace
 
 GnuplotChart gnuplot_chart(const Chart& chart, std::size_t width) {
-  constexpr std::size_t kLegendRow = 23;  // [px]
+  constexpr std::size_t kLegendRow = 23;  // [px] height of a row of the legend
   const std::vector<LegendEntry> legend = legend_of(chart);
   const std::size_t columns = legend.empty() ? 1 : legend_columns(legend, width);
   const std::size_t legend_height =

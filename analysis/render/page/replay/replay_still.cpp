@@ -15,7 +15,7 @@ namespace montecarta::analysis {
 namespace {
 
 constexpr std::size_t kMostDrawnCells = 4;
-constexpr double kPanelWidth = 380.0, kSpace = 24.0, kHead = 30.0, kLower = 130.0;  // [px]
+constexpr double kPanelWidth = 380.0, kSpace = 24.0, kHead = 30.0, kLower = 130.0;  // sizes in px
 constexpr double kLeastNees = 0.1, kMostNees = 1e6;
 
 /// A rectangle of the drawing [px].
