@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Associations of detections, summed over the scans of a run (AssociationCounts).
+// Counts of the associations of detections (AssociationCounts), summed over the scans of a run.
 #include "analysis/run/measured_run.hpp"
 #include "analysis/study/cell_report.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The Cramer-Rao bound of the study, and how near cells come to it.
+// The Cramer-Rao bound of the study, and the efficiency of each cell with respect to it.
 #include "analysis/study/efficiency.hpp"
 #include "analysis/study/frame.hpp"
 #include "analysis/study/metric.hpp"
@@ -15,7 +15,7 @@ const std::vector<ResultNumber<Efficiency>> kEfficiencies = {
     {"heading_efficiency", "1", &Efficiency::heading},
     {"map_efficiency", "1", &Efficiency::map}};
 
-/// A file with one row for each scan: the Cramer-Rao bound of position and heading.
+/// Makes a file with one row for each scan: the Cramer-Rao bound of position and heading.
 Frame bound_frame(const StudyAnalysis& study) {
   if (study.bound.empty()) return {};
   return {{{"time", "s", study.times},

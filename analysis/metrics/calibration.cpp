@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Probability integral transforms of errors (with matched noise) and of the NEES, over runs.
+// Tests of the probability integral transforms of the NEES and, with matched noise, of the errors,
+// over runs.
 #include "analysis/verdict/calibration.hpp"
 
 #include "analysis/run/measured_run.hpp"
@@ -33,7 +34,7 @@ class CalibrationOverRuns final : public MergedSums<CalibrationOverRuns> {
 
 using Chosen = std::function<bool(const JudgedPits&)>;
 
-/// The chosen tests of a cell.
+/// Returns the tests of a cell that `chosen` selects.
 std::vector<const JudgedPits*> tests_of(const CellAnalysis& cell, const Chosen& chosen) {
   std::vector<const JudgedPits*> found;
   for (const JudgedPits& one : cell.get<Calibrations>()) {
@@ -42,7 +43,7 @@ std::vector<const JudgedPits*> tests_of(const CellAnalysis& cell, const Chosen& 
   return found;
 }
 
-/// Returns whether any cell has a chosen test.
+/// Returns whether `chosen` selects a test of any cell.
 bool has_test(const StudyAnalysis& study, const Chosen& chosen) {
   return std::ranges::any_of(
       study.cells, [&](const CellAnalysis& cell) { return !tests_of(cell, chosen).empty(); });
@@ -52,7 +53,7 @@ bool is_of_error(const JudgedPits& one) { return one.quantity != kNees; }
 
 bool is_of_nees(const JudgedPits& one) { return one.quantity == kNees; }
 
-/// Names of the quantities that any cell has.
+/// Returns the names of the quantities that at least one cell has.
 std::vector<std::string> quantities_of(const StudyAnalysis& study) {
   std::vector<std::string> found;
   for (const char* name : {"x", "y", "heading", "landmark x", "landmark y", kNees}) {
@@ -74,7 +75,8 @@ std::string faults_text(const std::vector<const JudgedPits*>& tests) {
   return std::to_string(faults) + " of " + std::to_string(made);
 }
 
-/// A row of the verdicts at the end of the run; "-" if a quantity is not judged.
+/// Makes a row with the verdict on each quantity at the end of the run; "-" if a quantity is not
+/// judged.
 std::vector<TextTable::Entry> row_of(const CellAnalysis& cell, const std::string& by,
                                      const std::vector<std::string>& quantities) {
   std::vector<TextTable::Entry> row = {{"cell", cell.label, Align::left}, {"by", by, Align::left}};
@@ -120,7 +122,7 @@ void add_calibration_notes(const StudyAnalysis& study, Section& section) {
   }
 }
 
-/// A file with one row for each test. The p-value is that of the test alone.
+/// Makes a file with one row for each test. Its p-value is not corrected for the number of tests.
 Frame calibration_frame(const StudyAnalysis& study) {
   Frame frame;
   for (const CellAnalysis& cell : study.cells) {
@@ -143,7 +145,7 @@ Frame calibration_frame(const StudyAnalysis& study) {
   return frame;
 }
 
-/// {point} Counts divided by the number of values, minus the points of the ECDF.
+/// Returns {point} the share of the values at or below each point of the ECDF, minus the point.
 std::vector<double> deviations(std::size_t values,
                                const std::function<std::size_t(std::size_t)>& count_at) {
   std::vector<double> found;
@@ -153,7 +155,7 @@ std::vector<double> deviations(std::size_t values,
   return found;
 }
 
-/// Panels with the curves of all cells, and with the band of the cell that has most values.
+/// Makes panels with the curves of all cells, and with the band of the cell that has most values.
 std::vector<Panel> panels_like(const StudyAnalysis& study, const JudgedPits& like,
                                const std::string& name) {
   Panel blank{name, "ECDF - PIT, " + like.quantity + " at " + fixed_seconds(like.time), {}, {}};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Estimates of another program: errors and deviations of each component, in the stated convention.
+// Estimates of another program: errors and deviations of each component, in the convention of the
+// error that the user stated.
 #include "analysis/run/measured_run.hpp"
 #include "analysis/study/cell_report.hpp"
 
@@ -14,7 +15,7 @@
 namespace montecarta::analysis {
 namespace {
 
-/// Root mean squares over runs and scans that have a NEES, in the units of the components.
+/// Root mean squares, in the units of the components, over the runs and scans that have a NEES.
 struct ComponentErrors {
   std::vector<double> error;      ///< {component} RMS error
   std::vector<double> deviation;  ///< {component} RMS deviation that the other program reports

@@ -75,7 +75,8 @@ void nees_series(const CellAnalysis& cell, std::vector<Frame::Column>& all) {
   for (const NeesResult& nees : cell.nees) add_nees(nees, all);
 }
 
-/// One band for each number of complete runs among the cells that are tested.
+/// Returns one band for every number of complete runs that a tested cell has, since the bounds
+/// depend on it.
 std::vector<Band> bands(const StudyAnalysis& study, std::size_t dimension) {
   std::set<std::size_t> runs;
   for (const CellAnalysis& cell : study.cells) {
@@ -108,7 +109,7 @@ Panel nees_panel(const StudyAnalysis& study, ErrorBlock block) {
   return panel;
 }
 
-/// The NEES ratio of a cell over time.
+/// Makes a row of strips with the NEES ratio of a cell over time.
 StripRow strip_of(const CellAnalysis& cell, const NeesResult& nees) {
   const auto dimension = static_cast<double>(nees.series.dimension);
   StripRow row{
@@ -131,7 +132,7 @@ StripPanel nees_strips(const StudyAnalysis& study, ErrorBlock block) {
   return panel;
 }
 
-/// A figure of the NEES ratio: strips for more than kMostRatioCurves cells, else curves.
+/// Makes a figure of the NEES ratio: strips for more than kMostRatioCurves cells, else curves.
 Figure nees_figure(const StudyAnalysis& study, const std::vector<ErrorBlock>& blocks,
                    const std::string& of_strips, const std::string& of_curves, Figure figure) {
   std::vector<StripPanel> strips;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whether the covariances of another program fit another convention of the error.
+// Tests whether the covariances of another program fit another convention of the error.
 #include "analysis/verdict/convention_hints.hpp"
 
 #include "analysis/run/measured_run.hpp"

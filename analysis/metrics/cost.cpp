@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Processor time of the filter.
+// Processor time of the filter, and number of factorisations that needed a fallback.
 #include "analysis/run/measured_run.hpp"
 #include "analysis/study/metric.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Effective particles, and ancestors that still have descendants.
+// Number of effective particles, and number of ancestors that still have descendants.
 #include "analysis/run/measured_run.hpp"
 #include "analysis/study/cell_report.hpp"
 #include "analysis/study/lineage_sums.hpp"
@@ -65,7 +65,7 @@ std::vector<TextTable::Entry> diversity_row(const StudyAnalysis& study, const Ce
   return row;
 }
 
-/// A panel of distinct ancestors.
+/// Makes a panel of the number of distinct ancestors.
 Panel ancestor_panel(const StudyAnalysis& study, const std::string& series,
                      const std::string& label) {
   const CellValues values = [&](const CellAnalysis& cell) { return cell.over_time(series); };
@@ -122,7 +122,8 @@ std::vector<Figure> particles_figures(const StudyAnalysis& study) {
 
 Metric particles_metric() { return {.scores = kParticlesScores}; }
 
-/// A metric of its own, without the scores, since its series come last in files.
+/// Diversity is a metric apart from the scores of the particles because its series come last in
+/// files.
 Metric diversity_metric() {
   return {.scan_series = kParticlesSeries,
           .sections = particles_sections,

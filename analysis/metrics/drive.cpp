@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// NEES along a recorded drive, by references with known errors.
+// NEES along a recorded drive, computed from references with known errors.
 #include "analysis/run/measured_run.hpp"
 #include "analysis/statistics/sums.hpp"
 #include "analysis/study/cell_analysis.hpp"
@@ -23,7 +23,7 @@
 namespace montecarta::analysis {
 namespace {
 
-/// {reference with known errors} verdicts of one cell
+/// {reference with known errors} Verdict on one cell by each reference.
 using DriveConsistencies = std::vector<DriveConsistency>;
 
 class DrivesOverRuns final : public MergedSums<DrivesOverRuns> {
@@ -69,7 +69,7 @@ void for_each_drive(const StudyAnalysis& study, const Visit& visit) {
 std::string block_text(const DriveConsistency& drive, ErrorBlock block) {
   const CorrelatedAverage& found = drive.mean.blocks[static_cast<std::size_t>(block)];
   if (!(found.effective_samples > 0.0)) return "-";
-  // The ends lie at very different distances from the mean, so each has its own digits.
+  // The ends lie at very different distances from the mean, so each is rounded by itself.
   return readable(found.mean) + " [" + compact(found.ratio.lower) + ", " +
          compact(found.ratio.upper) + "]";
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Errors and the deviations that the filter reports (STATISTICS 8).
+// Errors beside the standard deviations that the filter reports (STATISTICS 8).
 #include "analysis/run/measured_run.hpp"
 #include "analysis/study/cell_report.hpp"
 #include "analysis/study/error_moments.hpp"
@@ -13,7 +13,7 @@
 namespace montecarta::analysis {
 namespace {
 
-constexpr double kEnvelope = 3.0;  // standard deviations
+constexpr double kEnvelope = 3.0;  // half width of an envelope in standard deviations
 
 constexpr std::size_t kMostEnvelopeRows = 6;
 
@@ -52,7 +52,7 @@ void error_series(const CellAnalysis& cell, std::vector<Frame::Column>& all) {
   }
 }
 
-/// The error of one component with its envelope; angles in degrees.
+/// Makes a panel with the error of one component and its envelope; angles are in degrees.
 Panel envelope_panel(const CellAnalysis& cell, std::size_t style, std::size_t component) {
   const ErrorTrace& trace = *cell.find<ErrorTrace>();
   const std::string name = kErrorComponents[component];
@@ -69,7 +69,7 @@ Panel envelope_panel(const CellAnalysis& cell, std::size_t style, std::size_t co
   return panel;
 }
 
-/// A figure with a row of panels, forward, left and heading, for each of the first cells.
+/// Makes a figure with a row of panels, forward, left and heading, for each of the first cells.
 Figure envelope_figure(const StudyAnalysis& study) {
   Figure figure = figure_of("error_envelopes");
   std::vector<Panel> panels;

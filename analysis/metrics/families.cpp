@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// All tests of the verdict, one by one.
+// All single tests on which the verdict rests, as a file.
 #include "analysis/study/cell_report.hpp"
 #include "analysis/study/verdict_table.hpp"
 
@@ -42,7 +42,7 @@ std::vector<Section> families_sections(const StudyAnalysis& study) {
   return table_section(section, family_table(study));
 }
 
-/// A file with one row for each member of each family, scans included.
+/// Makes a file with one row for each member of each family, including the family of scans.
 Frame families_frame(const StudyAnalysis& study) {
   Frame frame;
   for (const CellAnalysis& cell : study.cells) {

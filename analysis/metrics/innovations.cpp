@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Size and whiteness of the innovations, which need no truth.
+// Size and whiteness of the innovations, which are judged without knowing the truth.
 #include "analysis/verdict/innovations.hpp"
 
 #include "analysis/run/measured_run.hpp"
@@ -17,7 +17,7 @@
 namespace montecarta::analysis {
 namespace {
 
-/// The widest bound of the tested lags; NaN if none is tested.
+/// Returns the widest bound of the tested lags; NaN if none is tested.
 double widest_bound(const Innovations& found) {
   double widest = kNaN;
   for (const double bound : found.white_bound) widest = std::fmax(widest, bound);
@@ -47,7 +47,7 @@ class InnovationsOverRuns final : public MergedSums<InnovationsOverRuns> {
 
  private:
   const RunCriteria* criteria_;
-  bool has_common_scans_;  ///< false if runs are drives of their own, which have no mean over time
+  bool has_common_scans_;  ///< false if every run has its own drive: then no mean over time exists
   InnovationSums innovations_;
 };
 
@@ -116,8 +116,8 @@ std::vector<TextTable::Entry> innovation_row(const CellAnalysis& cell, double le
   return row;
 }
 
-/// The bands that white innovations do not leave: one for each number of pairs of scans; none if no
-/// pairs are that far apart.
+/// Returns the bands within which white innovations stay: one for each different width among the
+/// cells; none if no lag was tested.
 std::vector<Band> white_bands(const StudyAnalysis& study) {
   std::set<double> bounds;
   for (const CellAnalysis& cell : study.cells) {
@@ -153,7 +153,7 @@ Figure whiteness_figure(const StudyAnalysis& study) {
   return figure;
 }
 
-/// A sentence for each cell whose findings depend on one innovation.
+/// Makes a sentence for each cell whose findings depend on one innovation.
 std::vector<std::string> largest_notes(const StudyAnalysis& study) {
   std::vector<std::string> notes;
   for (const CellAnalysis& cell : study.cells) {

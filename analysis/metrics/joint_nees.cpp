@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// NEES of pose and map together.
+// NEES of the joint estimate of pose and map.
 #include "analysis/verdict/joint_nees.hpp"
 
 #include "analysis/run/measured_run.hpp"
@@ -27,7 +27,7 @@ constexpr Score kJointNeesScores[] = {
      },
      Better::neither}};
 
-/// [s] Times of the joint estimates.
+/// Returns the times [s] of the joint estimates.
 std::vector<double> times_of(const RunCriteria& criteria) {
   std::vector<double> times;
   for (const std::uint32_t scan : criteria.joint_scans) times.push_back(criteria.times[scan]);
@@ -64,7 +64,7 @@ void joint_nees_numbers(const CellAnalysis& cell, Frame::Row& all) {
 
 bool is_judged(const CellAnalysis& cell) { return cell.get<JointConsistency>().is_judged(); }
 
-/// The stored scan at which the average is farthest from 1.
+/// Returns the index of the stored scan at which the average is farthest from 1.
 std::size_t worst_row(const JointConsistency& joint) {
   const auto distance = [](double average) {
     return std::isnan(average) ? -1.0 : std::abs(std::log(average));
@@ -86,8 +86,8 @@ std::vector<TextTable::Entry> joint_row(const CellAnalysis& cell,
       {"verdict", in_words(joint.verdict), Align::right, tone_of(joint.verdict)}};
 }
 
-/// Adds notes on how to read the table, or the reason why there are no numbers; nothing if no joint
-/// estimates are stored.
+/// Adds notes on how to read the table, or the reason why there are no numbers. Adds nothing if no
+/// joint estimates are stored.
 void add_joint_notes(const StudyAnalysis& study, Section& section) {
   if (std::ranges::any_of(study.cells, is_judged)) {
     section.add_notes("notes", {{"scans", std::to_string(study.joint_times.size())},
@@ -105,7 +105,8 @@ void add_joint_notes(const StudyAnalysis& study, Section& section) {
   }
 }
 
-/// A file with one row for each cell and stored scan: joint NEES per component with its bounds.
+/// Makes a file with one row for each cell and stored scan: joint NEES per component with its
+/// bounds.
 Frame joint_frame(const StudyAnalysis& study) {
   Frame frame;
   for (const CellAnalysis& cell : study.cells) {
@@ -124,8 +125,8 @@ Frame joint_frame(const StudyAnalysis& study) {
   return frame;
 }
 
-/// Adds the ends of the band, which is the narrower the larger the map is; one band for each number
-/// of runs.
+/// Adds the lower and the upper end of the band of a cell as two curves. The band narrows as the
+/// map grows, and depends on the number of runs.
 void add_band(const CellAnalysis& cell, double level, bool is_first, Panel& panel) {
   const std::vector<Interval>& bounds = cell.get<JointConsistency>().bounds;
   panel.curves.push_back({is_first ? level_text(level) + " band" : "", kReferenceStyle,
@@ -148,8 +149,8 @@ StripPanel joint_strips(const StudyAnalysis& study) {
   return panel;
 }
 
-/// A figure of the NEES of pose and map together at the scans with joint estimates, with the band
-/// of a consistent filter. It has no data if no cell was judged by them.
+/// Makes a figure of the NEES of pose and map together at the scans with joint estimates, with the
+/// band of a consistent filter. It has no data if no cell was judged by them.
 Figure joint_figure(const StudyAnalysis& study) {
   Figure figure = figure_of("joint_nees");
   const StripPanel strips = joint_strips(study);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Distances of the landmarks of final maps from the truth.
+// Distances of the landmarks of the final maps from their true positions.
 #include "analysis/run/measured_run.hpp"
 #include "analysis/study/cell_report.hpp"
 #include "analysis/study/efficiency.hpp"
@@ -70,7 +70,7 @@ std::vector<TextTable::Entry> map_error_row(const CellAnalysis& cell) {
           {"spurious", text("landmarks_spurious")}};
 }
 
-/// {reason} Labels of the cells without map errors: "a, b".
+/// {reason} Returns the labels of the cells that lack map errors for this reason: "a, b".
 std::map<std::string, std::string> cells_without_map_errors(const StudyAnalysis& study) {
   std::map<std::string, std::string> cells;
   for (const CellAnalysis& cell : study.cells) {
@@ -107,8 +107,8 @@ void add_map_notes(const StudyAnalysis& study, Section& section) {
   }
 }
 
-/// A file with one row for each cell and landmark: error and NEES over runs, with the bounds of
-/// that NEES.
+/// Makes a file with one row for each cell and landmark: error and NEES over runs, with the bounds
+/// of that NEES.
 Frame landmarks_frame(const StudyAnalysis& study) {
   Frame frame;
   for (const CellAnalysis& cell : study.cells) {

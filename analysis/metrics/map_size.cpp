@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Numbers of landmarks in the map, and of the surveyed ones among them.
+// Number of landmarks in the map, and surveyed beacons that were found in it.
 #include "analysis/run/measured_run.hpp"
 #include "analysis/study/metric.hpp"
 

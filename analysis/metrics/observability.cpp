@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Information about the heading of path and map together, which no detection can give (STATISTICS
-// 22).
+// Information that the filter has about the heading of path and map together, although no detection
+// can give any (STATISTICS 22).
 #include "analysis/run/measured_run.hpp"
 #include "analysis/study/cell_report.hpp"
 
@@ -22,7 +22,7 @@ constexpr ScanSeries kObservabilitySeries[] = {
      [](const MeasuredRun& run) { return run.rows.rotation_information; }},
 };
 
-/// Text of the standard deviation [deg] of the heading; beyond a full turn it has no meaning.
+/// Text of the standard deviation [deg] of the heading, which has no meaning beyond a full turn.
 std::string heading_of(double information) {
   const double degrees = 180.0 / kPi / std::sqrt(information);
   return degrees > 360.0 ? "nothing" : readable(degrees);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Distances from independent measurements of the path.
+// Distances of estimated paths from independent measurements of the path.
 #include "analysis/run/measured_run.hpp"
 #include "analysis/study/cell_report.hpp"
 #include "analysis/study/reference_sums.hpp"
@@ -18,7 +18,8 @@
 namespace montecarta::analysis {
 namespace {
 
-/// Text of a mean, to a centimetre or a hundredth of a degree: no fix is known better.
+/// Text of a mean, rounded to a centimetre or a hundredth of a degree because no fix is known
+/// better.
 std::string mean_text(const Spread& spread, double factor = 1.0) {
   return with_error_to(2, factor * spread.summary.mean, factor * spread.summary.standard_error());
 }
@@ -27,7 +28,7 @@ std::string count_text(const Spread& spread) {
   return with_error_to(1, spread.summary.mean, spread.summary.standard_error());
 }
 
-/// Text of the median run and the two ends: "1.55 [1.41, 2.20]".
+/// Text of the median over runs, with the least and the greatest run: "1.55 [1.41, 2.20]".
 std::string runs_text(const Spread& spread) {
   if (std::isnan(spread.median)) return "-";
   const auto text = [](double value) { return with_error_to(2, value, kNaN); };
@@ -38,7 +39,7 @@ std::string of_text(std::size_t k, std::size_t n) {
   return std::to_string(k) + " of " + std::to_string(n);
 }
 
-/// Number of runs that can be judged, failed ones included.
+/// Number of runs that can be judged, including failed ones.
 std::size_t judged_runs(const CellAnalysis& cell, const ReferenceAnalysis& against) {
   return against.with_fixes() + cell.failures.size();
 }
@@ -93,7 +94,7 @@ std::vector<TextTable::Entry> map_row(const StudyAnalysis& study, const CellAnal
   return row;
 }
 
-/// The score by which cells are compared.
+/// Returns the score by which cells are compared.
 double ReferenceScores::*compared_score(const JudgedReference& reference) {
   return reference.compares_raw() ? &ReferenceScores::rms : &ReferenceScores::aligned_rms;
 }
@@ -171,8 +172,8 @@ Frame references_frame(const StudyAnalysis& study) {
   return frame;
 }
 
-/// A file with one row for each fix of the leading reference, and one column for each cell: RMS
-/// distance over runs.
+/// Makes a file with one row for each fix of the leading reference, and one column for each cell:
+/// RMS distance over runs.
 Frame reference_errors_frame(const StudyAnalysis& study) {
   if (study.references.empty() || study.own_drives > 0) return {};
   Frame frame{{{"time", "s", study.references.front().times}}};
@@ -189,7 +190,7 @@ constexpr double kLeastError = 0.01;
 
 constexpr double kTwoDecades = 100.0;
 
-/// The scale of the axis that all panels share; it begins at kLeastError if it is logarithmic.
+/// Returns the scale of the axis that all panels share. A logarithmic axis begins at kLeastError.
 Scale scale_of(const std::vector<Panel>& panels) {
   double least = std::numeric_limits<double>::infinity(), greatest = 0.0;
   for (const Panel& panel : panels) {
@@ -204,13 +205,13 @@ Scale scale_of(const std::vector<Panel>& panels) {
   return greatest > kTwoDecades * least ? Scale::logarithmic : Scale::from_zero;
 }
 
-/// Adds panels to a figure; its sentence mentions them if there are several.
+/// Adds panels to a figure. If there are several, adds a sentence about them.
 void add(const std::vector<Panel>& panels, const std::vector<double>& times, Figure& figure) {
   if (panels.size() > 1) figure.sentence += " " + prose("references", "panels");
   add_panels(panels, times, figure);
 }
 
-/// The score of a run by the leading reference, which the comparison uses.
+/// Returns the score of a run by the leading reference, which is the one that comparisons use.
 template <double ReferenceScores::*kValue>
 double of_reference(const MeasuredRun& run) {
   return run.references.empty() ? kNaN : run.references.front().scores.*kValue;

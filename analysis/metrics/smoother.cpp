@@ -11,7 +11,7 @@
 namespace montecarta::analysis {
 namespace {
 
-/// The cell of full smoothing; nullptr if the study has none, or has no other cell.
+/// Returns the cell of full smoothing; nullptr if the study has none, or has no other cell.
 const CellAnalysis* smoother_of(const StudyAnalysis& study) {
   const auto smooths = [](const CellAnalysis& cell) {
     return cell.filter == "smoother" && cell.complete > 0;
@@ -20,14 +20,14 @@ const CellAnalysis* smoother_of(const StudyAnalysis& study) {
   return found == study.cells.end() || study.cells.size() < 2 ? nullptr : &*found;
 }
 
-/// Pairs of runs with the smoother's mean squares on the left and the cell's on the right.
+/// Returns pairs of runs with the smoother's mean squares on the left and the cell's on the right.
 PairedRuns runs_beside(const CellAnalysis& cell, const CellAnalysis& smoother,
                        const char* mean_square) {
   return paired_runs(smoother, cell, *find_score(mean_square));
 }
 
-/// Root of the ratio of two mean squares, the smoother's divided by the cell's; NaN if there is
-/// none.
+/// Root of the ratio of two mean squares, the smoother's divided by the cell's; NaN if one of them
+/// is not above 0.
 double paired_efficiency(const PairedRuns& runs) {
   const double above = mean_of(runs.left), below = mean_of(runs.right);
   return below > 0.0 && above > 0.0 ? std::sqrt(above / below) : kNaN;
@@ -41,12 +41,12 @@ std::string efficiency_text(const CellAnalysis& cell, const CellAnalysis& smooth
   if (std::isnan(efficiency)) return "-";
   const double above = mean_of(runs.left), below = mean_of(runs.right);
   if (runs.left.size() < 2) return readable(efficiency);
-  SummaryOf differences;  // differences of the half logarithm, to first order
+  SummaryOf differences;  // terms of half the logarithm of the ratio, to first order
   for (std::size_t k = 0; k < runs.left.size(); ++k) {
     differences.add(0.5 * (runs.left[k] / above - runs.right[k] / below));
   }
   const double half_width = differences.result().half_width(level);
-  if (!(half_width > 0.0)) return readable(efficiency);  // the estimates are the same in every run
+  if (!(half_width > 0.0)) return readable(efficiency);  // the ratio is the same in every run
   return with_interval(efficiency,
                        {efficiency * std::exp(-half_width), efficiency * std::exp(half_width)});
 }

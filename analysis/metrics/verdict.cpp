@@ -54,7 +54,7 @@ class VerdictOverRuns final : public MergedSums<VerdictOverRuns> {
   std::optional<WholeError> sums_;
 };
 
-/// Adds p_FAMILY for each family; NaN if it does not apply.
+/// Adds the p-value of each family as p_FAMILY; NaN if the family does not apply.
 void verdict_numbers(const CellAnalysis& cell, Frame::Row& all) {
   const Verdict& found = cell.verdict;
   all.insert(all.end(),

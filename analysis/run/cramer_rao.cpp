@@ -52,8 +52,8 @@ std::vector<JointBound::SeenLandmark> seen_from(const Pose& pose, const Simulate
   return seen;
 }
 
-/// The rows of the true path, still without poses, with the control steps between them: a row for
-/// each step, or for each scan.
+/// Returns the path without its poses: times and numbers of control steps of its rows. A row is a
+/// scan if the file stores scans only, else a step.
 TruePath steps_of(const ResultFile& file) {
   TruePath path{file.description().start, {}, {}, {}, {}, file.scan_rows()};
   const std::vector<double>& times = file.times();

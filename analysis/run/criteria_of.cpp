@@ -39,15 +39,17 @@ bool are_true_headings_the_same(const ResultFile& file) {
   return true;
 }
 
-/// The scenario says how the truth is simulated, even in a shard of one run. Files whose scenario
-/// does not, such as those of imported estimates, have all of their runs.
+/// Chooses the frame by the scenario, which states how the truth is simulated, even in a shard of
+/// one run. Files without that statement, such as those of imported estimates, hold all of their
+/// runs, whose headings are compared instead.
 ErrorFrame error_frame_of(const ResultFile& file) {
   if (noise_is_matched(file)) return ErrorFrame::of_estimate;
   const bool is_same = says(file, "noise", "measured-control") || are_true_headings_the_same(file);
   return is_same ? ErrorFrame::of_truth : ErrorFrame::of_estimate;
 }
 
-/// Criteria for the maps of a drive with known truth; recorded drives are judged by their beacons.
+/// Returns the criteria for the maps of a drive with known truth. Recorded drives are judged by
+/// their beacons.
 MapCriteria map_criteria_of(const ResultFile& file) {
   MapCriteria criteria;
   if (!file.has_truth()) return criteria;

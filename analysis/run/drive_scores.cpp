@@ -25,18 +25,18 @@ using BeliefMatrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 /// Covariance of the pose after a scan, as the filter reports it.
 struct ScanBelief {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  double inverse_freedom = 0.0;  ///< 1 / degrees of freedom of that covariance; 0 if it is exact
+  double inverse_freedom = 0.0;  ///< 1 / degrees of freedom of the covariance; 0 if it is exact
   bool is_known = true;
 };
 
-/// {scan} Beliefs of all scans, and their means row by row.
+/// Means and covariances of the pose after all scans.
 struct ScanBeliefs {
-  std::vector<double> mean;  ///< {scan, 3} [m, m, rad]
+  std::vector<double> mean;  ///< {scan, 3} [m, m, rad] means of the pose
   std::vector<ScanBelief> beliefs;
 };
 
-/// Expected covariance of the mean's error for drawn poses, with Satterthwaite's degrees of freedom
-/// (STATISTICS 4).
+/// Returns the expected covariance of the mean's error for drawn poses, with Satterthwaite's
+/// degrees of freedom (STATISTICS 4).
 ScanBelief belief_of_draws(const Eigen::Matrix3d& spread, const EffectiveDraws& draws,
                            std::size_t dimension) {
   ScanBelief belief;
@@ -85,7 +85,8 @@ double on_chi_square_scale(double nees, const Eigen::MatrixXd& total, const Eige
   const Eigen::MatrixXd share = total.llt().solve(own);
   const double of_one = (share * share).trace() + share.trace() * share.trace();
   const double freedom = (d + d * d) / (inverse_freedom * of_one);
-  // Number of draws: the covariance is already that of the mean's error.
+  // A number of draws that stands for infinity, because `own` is already the covariance of the
+  // mean's error.
   constexpr double kExactMean = 1e300;
   return sampler_scale(static_cast<std::size_t>(total.rows()))(nees, {kExactMean, freedom + 1.0});
 }
@@ -160,9 +161,10 @@ namespace {
 
 constexpr std::size_t kFewestFixes = 2;
 
-constexpr double kSameWithin = 1e-3;  // [standard deviations of a fix]
+// Largest length [standard deviations of a fix] of an error that counts as zero.
+constexpr double kSameWithin = 1e-3;
 
-/// Largest squared length of the samples of `series` {component}{sample}.
+/// Returns the largest squared length of the samples of `series` {component}{sample}.
 double farthest_square(const VectorSeries& series) {
   double farthest = 0.0;
   for (std::size_t t = 0; t < series.front().size(); ++t) {

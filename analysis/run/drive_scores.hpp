@@ -27,9 +27,10 @@ struct FixErrors {
   VectorSeries whitened;
   VectorSeries by_reference;  ///< {component}{fix judged} errors in units of R alone
   std::vector<double> nees;   ///< {fix judged} NEES
-  std::vector<double> times;  ///< [s] {fix judged}
-  std::size_t in_gaps = 0;    ///< fixes left out: the scans around lie too far apart
-  std::size_t undefined = 0;  ///< fixes left out: no finite covariance, or too few draws
+  std::vector<double> times;  ///< [s] {fix judged} time of each fix
+  /// Number of fixes left out because the scans around them are over kLongestScanGap apart.
+  std::size_t in_gaps = 0;
+  std::size_t undefined = 0;  ///< number of fixes left out: no finite covariance, or too few draws
 };
 
 /// Errors at `fixes` by the leading moments of `rows`, whose scans are at `scan_times` [s], of a
@@ -45,12 +46,14 @@ struct DriveScores {
   std::array<CorrelatedAverage, kErrorBlocks.size()> blocks;
   /// {ErrorBlock} whitened errors; empty if the block is not measured.
   std::array<VectorSeries, kErrorBlocks.size()> errors;
-  ErrorBlock leading = ErrorBlock::pose;  ///< the pose where there are headings, else the position
-  double median = kNaN;       ///< median of the leading NEES divided by that of a chi-square
-  double seconds = 0.0;       ///< [s] time from the first fix judged to the last
-  std::size_t fixes = 0;      ///< number of fixes judged
-  std::size_t in_gaps = 0;    ///< fixes left out: scans around are over kLongestScanGap apart
-  std::size_t undefined = 0;  ///< fixes left out: no finite covariance, or too few draws
+  /// Block that is judged: the pose if fixes have headings, else the position.
+  ErrorBlock leading = ErrorBlock::pose;
+  double median = kNaN;   ///< median of the leading NEES divided by that of a chi-square
+  double seconds = 0.0;   ///< [s] time from the first fix judged to the last
+  std::size_t fixes = 0;  ///< number of fixes judged
+  /// Number of fixes left out because the scans around them are over kLongestScanGap apart.
+  std::size_t in_gaps = 0;
+  std::size_t undefined = 0;  ///< number of fixes left out: no finite covariance, or too few draws
   /// Whether the estimate is the reference itself: it differs from every fix by less than a
   /// thousandth of the fix's sigma.
   bool is_the_reference = false;

@@ -136,7 +136,7 @@ double JointBound::mean_map_variance() const {
   double sum = 0.0, count = 0.0;
   for (Eigen::Index row = 3; row < size_; row += 2) {
     const double x = joint_(row, row), y = joint_(row + 1, row + 1);
-    if (x + y > 0.01 * kUnknown * kUnknown) continue;  // all detections are along one line
+    if (x + y > 0.01 * kUnknown * kUnknown) continue;  // all of its detections lie along one line
     sum += x;
     sum += y;
     count += 1.0;

@@ -61,7 +61,7 @@ class JointBound {
   double pending_y_heading_ = 0.0;                  ///< [m/rad] element of Fx since the last scan
   Eigen::MatrixXd joint_;  ///< lower triangle of the joint covariance; its pose block is in pose_
   Eigen::Index size_ = 3;  ///< number of rows in use
-  std::vector<Eigen::Index> row_;  ///< {landmark} its first row; 0 if never seen
+  std::vector<Eigen::Index> row_;  ///< {landmark} its first row in `joint_`; 0 if it was never seen
 };
 
 }  // namespace montecarta::analysis

@@ -14,12 +14,13 @@ namespace montecarta::analysis {
 
 /// Normalised estimation error squared of pose and map together, of one run at one scan.
 struct JointScore {
-  double nees = 0.0;  ///< NaN if error or covariance is not finite, or P is not positive definite
-  std::size_t dimension = 0;  ///< 3 + 2 x landmarks in the map
+  /// NEES, e' P^-1 e; NaN if error or covariance is not finite, or P is not positive definite.
+  double nees = 0.0;
+  std::size_t dimension = 0;  ///< number of components: 3 + 2 x landmarks in the map
 };
 
-/// Scores {row} of `rows`, which are stored at these `scans`. `truth` {scan, 3} [m, m, rad];
-/// `landmarks` [m] by identity.
+/// Scores each row of `rows`, which are stored at these `scans`. `truth` {scan, 3} [m, m, rad] is
+/// the true path, and `landmarks` [m] are the true positions by identity.
 std::vector<JointScore> joint_scores(const JointRows& rows, std::span<const std::uint32_t> scans,
                                      std::span<const double> truth,
                                      std::span<const Eigen::Vector2d> landmarks);

@@ -47,7 +47,8 @@ struct LineageWalker::Sums {
   SummaryOf coalescence, coalesced, variance, squared_error;
 };
 
-/// Variance by families of the particles of scan `s`, which `ancestor_` names.
+/// Estimates the variance that comes from few particles at scan `s`. `ancestor_` assigns every
+/// particle to the family of its ancestor.
 double LineageWalker::family_variance(const RunRows& rows, std::size_t s) {
   const std::size_t particles = ancestor_.size();
   const double* const pose = rows.particle_pose.data() + 3 * particles * s;

@@ -91,19 +91,21 @@ class LineageWalker {
   double family_variance(const RunRows& rows, std::size_t s);
 
   AncestorSet set_;
-  std::vector<std::uint32_t> ancestor_;  ///< {particle of the first scan of the walk} ancestor
-  std::vector<double> families_;         ///< {ancestor, 2} weighted deviation of its descendants
+  /// {particle of the first scan of the walk} ancestor at the present scan.
+  std::vector<std::uint32_t> ancestor_;
+  std::vector<double> families_;  ///< {ancestor, 2} weighted deviation of its descendants
 };
 
 /// [s] Age of the ancestors in Diversity::lag (STATISTICS 14).
 inline constexpr double kDiversityLag = 10.0;
 
-/// {scan} Numbers of distinct ancestors of the particles of one run.
+/// Numbers of distinct ancestors of the particles of one run at every scan.
 struct Diversity {
-  /// Number of parents in the last resampling before the scan.
+  /// {scan} number of parents in the last resampling before the scan.
   std::vector<std::uint32_t> last_resampling;
-  std::vector<std::uint32_t> lag;   ///< number of ancestors kDiversityLag earlier, or at the start
-  std::vector<std::uint32_t> root;  ///< number of ancestors at the start; never grows
+  /// {scan} number of ancestors kDiversityLag earlier, or at the start if that is later.
+  std::vector<std::uint32_t> lag;
+  std::vector<std::uint32_t> root;  ///< {scan} number of ancestors at the start, which never grows
 };
 
 /// Counts ancestors along a genealogy. The object keeps its memory from run to run.
@@ -133,11 +135,12 @@ class DiversityCounter {
   Row ancestor_;
   std::size_t particles_ = 0;
   Diversity result_;
-  std::vector<std::size_t> resampled_;   ///< {scan} result of find_resamplings()
-  AncestorSet set_;                      ///< ancestors during the walk back
-  std::vector<ResamplingStep> path_;     ///< resamplings back from the last one, the latest first
-  std::vector<std::uint32_t> root_;      ///< {particle} ancestor at the start
-  std::vector<std::uint32_t> previous_;  ///< root_ one resampling earlier
+  std::vector<std::size_t> resampled_;  ///< {scan} result of find_resamplings()
+  AncestorSet set_;                     ///< ancestors during the walk back
+  std::vector<ResamplingStep> path_;    ///< resamplings back from the last one, the latest first
+  std::vector<std::uint32_t> root_;     ///< {particle} ancestor at the start
+  /// {particle} ancestor at the start, as it was one resampling earlier.
+  std::vector<std::uint32_t> previous_;
 };
 
 }  // namespace montecarta::analysis

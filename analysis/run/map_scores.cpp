@@ -12,7 +12,8 @@
 namespace montecarta::analysis {
 namespace {
 
-/// State of the assignment. Rows and columns count from 1. Prices keep all distances positive.
+/// State of the assignment. Rows and columns count from 1. The prices keep all distances at least
+/// 0.
 struct Assignment {
   explicit Assignment(const Eigen::MatrixXd& costs)
       : cost(costs),
@@ -55,7 +56,8 @@ struct Assignment {
 
   const Eigen::MatrixXd& cost;
   std::vector<double> row_price, column_price;
-  std::vector<std::size_t> row_of;  ///< {column} its row; 0 if it is free
+  /// {column} row assigned to the column; 0 if the column is free.
+  std::vector<std::size_t> row_of;
 };
 
 using PointSpan = std::span<const Eigen::Vector2d>;
@@ -122,7 +124,7 @@ void score_by_identity(const FinalMap& map, std::span<const Eigen::Vector2d> lan
 using Points = std::vector<Eigen::Vector2d>;
 
 struct BeaconPair {
-  double squared = 0.0;  ///< [m^2]
+  double squared = 0.0;  ///< [m^2] squared distance between landmark and beacon
   std::size_t landmark = 0, beacon = 0;
 };
 

@@ -27,7 +27,7 @@ inline constexpr double kGospaCutoff = 5.0;
 /// Svensson 2017; alpha = 2, p = 2): distance^2 = localisation^2 + cutoff^2 / 2 (missed +
 /// spurious).
 struct Gospa {
-  double distance = 0.0;      ///< [m]
+  double distance = 0.0;      ///< [m] GOSPA distance between map and truth
   double localisation = 0.0;  ///< [m] root of the sum of squared errors of the pairs
   double missed = 0.0;        ///< [1] number of true landmarks without a partner
   double spurious = 0.0;      ///< [1] number of landmarks of the map without a partner
@@ -48,7 +48,7 @@ struct MapCriteria {
 
 /// Scores of one landmark in one run; NaN where it is not in the map.
 struct LandmarkScore {
-  double squared_error = kNaN;  ///< [m^2]
+  double squared_error = kNaN;  ///< [m^2] squared position error
   double nees = kNaN;           ///< [1] NEES of two components
   bool in_map = false;
 };
@@ -56,9 +56,10 @@ struct LandmarkScore {
 /// Scores of the final map of a run against the true landmarks that came into view during the run.
 struct MapScores {
   Gospa gospa;
-  double rms = kNaN;          ///< [m] over the landmarks in the map; NaN without identities
-  double nees = kNaN;         ///< [1] mean NEES of the landmarks that have one
-  std::size_t undefined = 0;  ///< number of landmarks in the map that have no NEES
+  /// [m] RMS position error of the landmarks in the map; NaN without identities.
+  double rms = kNaN;
+  double nees = kNaN;                    ///< [1] mean NEES of the landmarks that have one
+  std::size_t undefined = 0;             ///< number of landmarks in the map that have no NEES
   std::vector<LandmarkScore> landmarks;  ///< {landmark}; empty where identities are unknown
 };
 

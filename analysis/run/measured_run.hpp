@@ -22,10 +22,11 @@ namespace montecarta::analysis {
 /// its own.
 struct MeasuredRun {
   RunRows rows;
-  std::span<const double> times;  ///< [s] {scan}
+  std::span<const double> times;  ///< [s] {scan} time of each scan
   RunMetrics metrics;
   std::vector<ReferenceRun> references;
-  std::vector<DriveScores> drives;  ///< {RunCriteria::judged_fixes} scores by that reference
+  /// {reference with known errors} scores at the fixes RunCriteria::judged_fixes.
+  std::vector<DriveScores> drives;
   /// Present if the final map is stored and beacons are known.
   std::optional<BeaconScores> beacons;
   std::optional<MapScores> map;   ///< present if the final map is stored and the world is known

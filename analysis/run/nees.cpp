@@ -44,9 +44,11 @@ constexpr double kLeastPivot = 1e-12;  // least pivot, and least eigenvalue that
 constexpr double kMostNegative = -1e-9;  // least eigenvalue that rounding explains
 // Largest error that rounding explains in a component known exactly.
 constexpr double kRounding = 1e-9;
-constexpr double kFarthestOutside = 10.0;  // [standard deviations] second-order effects are smaller
-constexpr double kLargestAsymmetry = 1e-6;  // [deviations] what six printed digits leave
-constexpr double kLeastTail = 1e-6;         // tail in which a consistent filter hardly ever lies
+// [standard deviations] largest error outside the range of P that second-order effects explain.
+constexpr double kFarthestOutside = 10.0;
+// [standard deviations] largest asymmetry that rounding to six digits explains.
+constexpr double kLargestAsymmetry = 1e-6;
+constexpr double kLeastTail = 1e-6;  // tail in which a consistent filter hardly ever lies
 const Eigen::Vector3d kLeastDeviation{1e-9, 1e-9, 1e-10};
 
 template <int D>

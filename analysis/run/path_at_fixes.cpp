@@ -33,7 +33,7 @@ PathAtFixes::PathAtFixes(const ReferencePath& reference, std::span<const double>
 }
 
 bool PathAtFixes::has_start() const {
-  constexpr double kSame = 1e-6;  // [m]
+  constexpr double kSame = 1e-6;  // [m] largest distance at which two positions count as equal
   const Eigen::Vector2d start(start_.x, start_.y);
   return !used_.position.empty() && (used_.position.front() - start).norm() < kSame;
 }

@@ -23,9 +23,9 @@ class PathAtFixes {
   PathAtFixes(const ReferencePath& reference, std::span<const double> times, const Pose& start);
 
   const std::string& name() const { return used_.name; }
-  /// [s] {fix used} time.
+  /// [s] {fix used} time of the fix.
   const std::vector<double>& times() const { return used_.time; }
-  /// [m]
+  /// [m] {fix used} position of the fix.
   const std::vector<Eigen::Vector2d>& positions() const { return used_.position; }
   /// [rad] {fix used} heading; empty where the reference has none.
   const std::vector<double>& headings() const { return used_.heading; }

@@ -34,8 +34,8 @@ double log_score(std::span<const WhitenedPose> errors);
 double energy_score(std::span<const double> pose, std::span<const double> log_weight,
                     const Eigen::Vector2d& truth);
 
-/// Both scores of a run. `errors` {scan} are those of RunMetrics; `particles` is the number of
-/// particles.
+/// Computes both scores of a run. `errors` {scan} are those of RunMetrics; `particles` is the
+/// number of particles.
 ProperScores proper_scores(const RunRows& rows, std::size_t particles,
                            std::span<const WhitenedPose> errors);
 

@@ -16,7 +16,7 @@ namespace montecarta::analysis {
 /// A rotation of the plane followed by a translation.
 struct RigidMotion {
   double angle = 0.0;                               ///< [rad] counter-clockwise
-  Eigen::Vector2d shift = Eigen::Vector2d::Zero();  ///< [m]
+  Eigen::Vector2d shift = Eigen::Vector2d::Zero();  ///< [m] translation
 
   Eigen::Vector2d operator()(const Eigen::Vector2d& point) const;
 };
@@ -40,15 +40,17 @@ inline constexpr double kLostBeyond = 10.0;
 /// all fixes, which removes the unknown error of the start's position and heading. NaN without
 /// fixes.
 struct ReferenceScores {
-  double rms = kNaN;                  ///< [m] raw
-  double median = kNaN;               ///< [m] raw
-  double gated_rms = kNaN;            ///< [m] raw, over the fixes within kReferenceGate medians
-  double gated_share = kNaN;          ///< [1] raw, share of the fixes within kReferenceGate medians
-  double aligned_rms = kNaN;          ///< [m] aligned
-  double aligned_median = kNaN;       ///< [m] aligned
-  double aligned_gated_rms = kNaN;    ///< [m] aligned, over fixes within kReferenceGate medians
-  double aligned_gated_share = kNaN;  ///< [1] aligned, share of the fixes within
-  double heading_rmse = kNaN;         ///< [rad] raw; NaN where the reference has no heading
+  double rms = kNaN;             ///< [m] RMS of the raw distances
+  double median = kNaN;          ///< [m] median of the raw distances
+  double gated_rms = kNaN;       ///< [m] RMS of the raw distances within kReferenceGate medians
+  double gated_share = kNaN;     ///< [1] share of the raw distances within kReferenceGate medians
+  double aligned_rms = kNaN;     ///< [m] RMS of the aligned distances
+  double aligned_median = kNaN;  ///< [m] median of the aligned distances
+  /// [m] RMS of the aligned distances within kReferenceGate medians.
+  double aligned_gated_rms = kNaN;
+  /// [1] share of the aligned distances within kReferenceGate medians.
+  double aligned_gated_share = kNaN;
+  double heading_rmse = kNaN;  ///< [rad] RMS raw heading error; NaN if the reference has no heading
 
   static constexpr auto members() {
     using Scores = ReferenceScores;

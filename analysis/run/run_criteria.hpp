@@ -18,21 +18,22 @@ namespace montecarta::analysis {
 
 /// Criteria for a run on a drive of its own.
 struct DriveCriteria {
-  std::span<const double> times;          ///< [s] {scan}
-  std::vector<PathAtFixes> references;    ///< as many as in RunCriteria
-  std::vector<PathAtFixes> judged_fixes;  ///< as many as in RunCriteria
+  std::span<const double> times;        ///< [s] {scan} time of each scan
+  std::vector<PathAtFixes> references;  ///< {reference} fixes of the reference on this drive
+  /// {reference with known errors} fixes of the reference on this drive.
+  std::vector<PathAtFixes> judged_fixes;
 };
 
 /// Criteria for runs, common to all cells of a file. The file must outlive them.
 struct RunCriteria {
-  std::span<const double> times;  ///< [s] {scan}
+  std::span<const double> times;  ///< [s] {scan} time of each scan
   double level = kUsualLevel;     ///< level of NEES bounds and tests
   double within = kUsualMargin;   ///< margin of the verdict (judge())
   std::vector<PathAtFixes> references;
   std::vector<Eigen::Vector2d> beacons;        ///< [m] positions of surveyed beacons
   MapCriteria map;                             ///< criteria for the maps of a simulation
   std::span<const std::uint32_t> joint_scans;  ///< scans at which joint estimates are stored
-  /// {reference with known errors} its fixes on the path of the scans.
+  /// {reference with known errors} fixes of the reference on the path of the scans.
   std::vector<PathAtFixes> judged_fixes = {};
   ErrorFrame frame = ErrorFrame::of_truth;
   bool calibrates = false;  ///< whether the PITs of errors are judged: only with matched noise

@@ -192,7 +192,8 @@ void RunMetrics::correct_and_whiten(const RunRows& rows, std::size_t particles, 
       if (is_drawn(rows, s)) scales = scales_of(draws_at(rows, particles, s));
       correct_spread(s, scales);
     }
-    // All components are known exactly. The spread of drawn poses makes no such claim.
+    // True if the filter claims to know all components exactly. The spread of drawn poses makes no
+    // such claim.
     const bool is_known = leading->rank[0][s] == 0 && leading != &corrected;
     if (std::isnan(leading->value[0][s]) && !is_known) continue;
     if (rows.error.components() == 0) {

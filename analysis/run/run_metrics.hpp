@@ -86,7 +86,7 @@ class RunMetrics {
   const std::vector<Eigen::Matrix3d>& covariances() const { return covariances_; }
   /// {scan} errors() in units of covariances(); empty if no covariance is stored.
   const std::vector<WhitenedPose>& estimates() const { return estimates_; }
-  /// Diversity of the particles; nullptr, as lineages(), if no ancestry is stored.
+  /// Diversity of the particles. Like lineages(), it is nullptr if no ancestry is stored.
   const Diversity* diversity() const { return diversity_; }
   const Lineages* lineages() const { return lineages_ ? &*lineages_ : nullptr; }
 
@@ -97,7 +97,8 @@ class RunMetrics {
   void whiten_pose(const RunRows& rows, std::size_t s, const std::optional<DrawsScales>& scales,
                    ErrorFrame frame);
 
-  std::array<NeesRows, kMoments.size()> nees_;  ///< {Moments}
+  /// {Moments} NEES by each definition of the moments.
+  std::array<NeesRows, kMoments.size()> nees_;
   WhitenedRun whitened_;
   std::vector<double> squared_position_, squared_heading_;
   std::vector<Eigen::Vector3d> errors_;

@@ -9,7 +9,7 @@ namespace montecarta::analysis {
 namespace {
 
 constexpr std::string_view kFinalMapSeen = "final_map_seen";
-constexpr double kRoundingOfCounts = 1e-6;  // [landmarks]
+constexpr double kRoundingOfCounts = 1e-6;  // [landmarks] rounding error that a map size may have
 
 }  // namespace
 
@@ -54,7 +54,8 @@ void RunReader::read_path(std::size_t i, std::vector<double>& out) const {
   out.resize(file_->times().size() * 3);
   const bool mixture = has("pose_mean_mixture", i);
   file_->read(*cell_, mixture ? "pose_mean_mixture" : "pose_mean", i, std::span(out));
-  if (!file_->description().drives.empty()) out.resize(scans_of(i) * 3);  // rows are scans
+  // The rows of such a drive are its scans.
+  if (!file_->description().drives.empty()) out.resize(scans_of(i) * 3);
 }
 
 void RunReader::read_final_map(std::size_t i, RunRows& rows) const {

@@ -14,7 +14,7 @@ namespace montecarta::analysis {
 
 /// The drive of one run: views into a file's description.
 struct RunDrive {
-  std::span<const double> scan_times;         ///< [s]
+  std::span<const double> scan_times;         ///< [s] {scan} time of each scan
   std::span<const std::uint32_t> scan_steps;  ///< {scan} step after which the scan was taken
   Pose start;                                 ///< pose before the first step
   std::span<const ReferencePath> references;  ///< references of a recorded drive

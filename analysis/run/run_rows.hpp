@@ -17,8 +17,8 @@ namespace montecarta::analysis {
 /// of the world, else the order of initialisation.
 struct FinalMap {
   std::vector<std::uint32_t> seen;          ///< {landmark} 1 if it is in the map
-  std::vector<Eigen::Vector2d> mean;        ///< [m] {landmark}
-  std::vector<Eigen::Matrix2d> covariance;  ///< [m^2] {landmark}
+  std::vector<Eigen::Vector2d> mean;        ///< [m] {landmark} estimated position
+  std::vector<Eigen::Matrix2d> covariance;  ///< [m^2] {landmark} covariance of the position
 
   /// [m] positions of the landmarks that are in the map.
   std::vector<Eigen::Vector2d> places() const {
@@ -32,20 +32,21 @@ struct FinalMap {
 
 /// Mean and covariance of the pose at every scan of one run; empty if not stored.
 struct MomentRows {
-  std::vector<double> mean;        ///< {scan, 3} [m, m, rad]
-  std::vector<double> covariance;  ///< {scan, 3, 3}
+  std::vector<double> mean;        ///< {scan, 3} [m, m, rad] mean of the pose
+  std::vector<double> covariance;  ///< {scan, 3, 3} covariance of the pose
 };
 
 /// Counts of the associations of every scan (AssociationCounts); empty where not stored.
 struct AssociationRows {
-  std::vector<double> correct, wrong, new_again, missed, clutter;  ///< {scan}
+  /// {scan} number of associations of each kind.
+  std::vector<double> correct, wrong, new_again, missed, clutter;
 };
 
 /// Estimate of pose and map together at the scans of ResultDescription::joint_scans; empty if not
 /// stored.
 struct JointRows {
-  std::vector<double> mean;        ///< {joint scan, state}; NaN for landmarks never seen
-  std::vector<double> covariance;  ///< {joint scan, state, state}
+  std::vector<double> mean;        ///< {joint scan, state} mean; NaN for landmarks never seen
+  std::vector<double> covariance;  ///< {joint scan, state, state} covariance
 
   std::size_t states() const { return mean.empty() ? 0 : covariance.size() / mean.size(); }
 };
@@ -53,8 +54,8 @@ struct JointRows {
 /// Errors of an imported estimate at every scan, in the convention that its file states; empty
 /// where not stored.
 struct ErrorRows {
-  std::vector<double> value;       ///< {scan, component}
-  std::vector<double> covariance;  ///< {scan, component, component} as imported
+  std::vector<double> value;       ///< {scan, component} error of the estimate
+  std::vector<double> covariance;  ///< {scan, component, component} covariance as imported
   /// {kErrorConventions}{scan} NEES if the covariance belonged to the error of that convention;
   /// empty if not stored.
   std::array<std::vector<double>, kErrorConventions.size()> nees_by;
@@ -78,20 +79,23 @@ struct RunRows {
   std::vector<double> truth;  ///< {scan, 3} [m, m, rad]; empty if unknown
   MomentRows spread;          ///< mean always stored, except in files of states that are no poses
   MomentRows mixture;
-  std::vector<double> ess;                      ///< {scan}
-  std::vector<std::uint32_t> resampled;         ///< {scan} 0 or 1
-  std::vector<std::uint32_t> numerical_faults;  ///< {scan}
-  std::vector<std::uint32_t> ancestor;          ///< {scan, particle}
-  std::vector<double> particle_pose;            ///< {scan, particle, 3} [m, m, rad]
-  std::vector<double> log_weight;               ///< {scan, particle} normalised
-  std::vector<double> nis;                      ///< {scan}
-  std::vector<std::uint32_t> nis_dof;           ///< {scan}
+  std::vector<double> ess;               ///< {scan} effective sample size
+  std::vector<std::uint32_t> resampled;  ///< {scan} 1 if the filter resampled at the scan, else 0
+  /// {scan} number of factorisations that needed a fallback.
+  std::vector<std::uint32_t> numerical_faults;
+  /// {scan, particle} index of the parent among the particles one scan ago.
+  std::vector<std::uint32_t> ancestor;
+  std::vector<double> particle_pose;   ///< {scan, particle, 3} [m, m, rad] pose of each particle
+  std::vector<double> log_weight;      ///< {scan, particle} logarithm of the normalised weight
+  std::vector<double> nis;             ///< {scan} normalised innovation squared (NIS)
+  std::vector<std::uint32_t> nis_dof;  ///< {scan} number of degrees of freedom of the NIS
   AssociationRows association;
   /// {row, 3} [m, m, rad] leading mean, also between scans; empty without references.
   std::vector<double> path;
-  std::vector<double> map_size;              ///< {scan} number of landmarks in the map
-  std::vector<double> rotation_information;  ///< [1/rad^2] {scan}; empty if not stored
-  std::optional<FinalMap> final_map;         ///< map at the last scan, if stored and whole
+  std::vector<double> map_size;  ///< {scan} number of landmarks in the map
+  /// {scan} [1/rad^2] information about the heading of path and map; empty if not stored.
+  std::vector<double> rotation_information;
+  std::optional<FinalMap> final_map;  ///< map at the last scan, if stored and whole
   JointRows joint;
   ErrorRows error;        ///< errors of imported estimates
   std::uint64_t run = 0;  ///< number of the run in the study

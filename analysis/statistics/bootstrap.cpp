@@ -100,7 +100,7 @@ std::vector<Interval> bootstrap_means(std::span<const std::vector<double>> colum
     if (all_finite(columns[c])) known.push_back(c);
   }
   const std::size_t width = (known.size() + kSums - 1) / kSums * kSums;
-  std::vector<double> rows(runs * width);  // {run, known column}
+  std::vector<double> rows(runs * width);  // {run, known column} values, row by row
   for (std::size_t i = 0; i < runs; ++i) {
     for (std::size_t k = 0; k < known.size(); ++k) rows[i * width + k] = columns[known[k]][i];
   }

@@ -17,7 +17,8 @@
 namespace montecarta::analysis {
 namespace {
 
-constexpr std::size_t kEveryLag = 128;  // lags up to here are all evaluated, then in growing steps
+// All lags up to this one are evaluated, longer ones in growing steps.
+constexpr std::size_t kEveryLag = 128;
 constexpr double kLagGrowth = 1.05;
 constexpr double kWindow = 5.0;
 // Least squared correlation that counts, in units of its mean by chance.
@@ -113,7 +114,8 @@ double effective_samples(std::span<const double> squared_correlations) {
 namespace {
 
 constexpr int kHalvings = 60;
-constexpr double kAtTheMean = 1e-4;  // deviates below which the formula loses its digits
+// [normal deviates] nearer to the mean, the formula loses its digits.
+constexpr double kAtTheMean = 1e-4;
 
 /// Derivatives of the cumulant generating function at `t`.
 struct Cumulants {
@@ -173,7 +175,8 @@ class ComponentLaw {
             .eigenvalues()
             .cwiseMax(0.0);
     for (const double weight : slow) terms.push_back({weight / dimension, 1.0});
-    // The rest varies within the blocks: equal weights with its sum and sum of squares.
+    // The remaining variance lies within the blocks. It gets equal weights that have its sum and
+    // its sum of squares.
     const auto n = static_cast<double>(covariance_.size());
     const double rest = variance_ - slow.sum();
     if (rest <= 1e-12 * variance_) return;

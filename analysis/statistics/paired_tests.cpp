@@ -41,7 +41,8 @@ double add_ranks(std::span<const double> differences, SignedRank& test) {
 /// Share of the 2^n assignments of signs to the ranks 1 ... n with a sum of positive ranks of at
 /// most `sum`.
 double share_up_to(std::size_t n, double sum) {
-  std::vector<double> ways(n * (n + 1) / 2 + 1);  // whole numbers below 2^50: exact
+  // {sum} number of assignments; exact, since it is below 2^50.
+  std::vector<double> ways(n * (n + 1) / 2 + 1);
   ways[0] = 1.0;
   for (std::size_t rank = 1; rank <= n; ++rank) {
     for (std::size_t s = ways.size() - 1; s >= rank; --s) ways[s] += ways[s - rank];

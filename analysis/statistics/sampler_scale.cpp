@@ -12,7 +12,8 @@
 namespace montecarta::analysis {
 namespace {
 
-constexpr double kLeastOctave = -16.0, kStepsPerOctave = 8.0;  // log2 of the chi-square
+// The columns begin at this log2 of the chi-square, and have this many steps per octave.
+constexpr double kLeastOctave = -16.0, kStepsPerOctave = 8.0;
 constexpr double kMostInverse = 0.5;  // largest 1 / freedom; the steps begin at 0
 constexpr double kLastTail = 1e-6;    // tail in which an ideal sampler hardly ever lies
 

@@ -46,8 +46,8 @@ class SamplerScale {
 
     const double *lower_, *upper_;
     double part_;          ///< weight of `upper_` in the interpolation, in [0, 1]
-    std::size_t last_;     ///< index of the last column
-    double factor_;        ///< d F divided by the NEES
+    std::size_t last_;     ///< index of the last column of the table
+    double factor_;        ///< ratio of d F to the NEES
     double first_octave_;  ///< log2 of the chi-square of the first column
     double beyond_;        ///< ratio of the chi-square to d F beyond the last column
   };

@@ -43,7 +43,7 @@ struct Part {
   bool of_first_runs = false;      ///< whether they are kept for the first runs of a study only
 };
 template <class Merge, class... Members>
-Part(Merge, std::tuple<Members...>, bool = false) -> Part<Merge, Members...>;  // for clang 14
+Part(Merge, std::tuple<Members...>, bool = false) -> Part<Merge, Members...>;  // needed by clang 14
 
 /// Members that are sums: merge_into() combines them.
 template <class... Members>

@@ -132,8 +132,8 @@ Calibration name_fault(const Uniformity& found, PitOf kind) {
 
 EcdfBand ecdf_band(std::size_t values, double level) {
   if (values == 0) return {};
-  // The tail that Bonferroni's inequality gives over all points and both sides, and the tail of one
-  // point alone.
+  // The bisection begins between the tail that Bonferroni's inequality gives over all points and
+  // both sides, and the tail of one point alone.
   double inside = 0.5 * (1.0 - level) / static_cast<double>(kEcdfSteps - 1);
   double outside = 0.5 * (1.0 - level);
   EcdfBand best = band_with_tails(values, inside);
@@ -161,7 +161,7 @@ Uniformity judge_uniformity(std::span<const double> values, const EcdfBand& band
 double p_value(const Uniformity& test) {
   const std::size_t n = test.band.values;
   if (n < kLeastValues) return Uniformity::kNone;
-  // Below this, rounding of the joint probability is larger.
+  // The p-value of a smaller tail would be lost in the rounding of the joint probability.
   constexpr double kLeastPointwiseTail = 1e-14;
   const double tail = std::max(least_tail(test.counts, n), kLeastPointwiseTail);
   return std::clamp(1.0 - band_with_tails(n, tail).joint, 0.0, 1.0);

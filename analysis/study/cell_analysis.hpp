@@ -54,7 +54,8 @@ struct CellAnalysis {
   std::size_t particles = 0;  ///< number of particles; 0 if it is not a particle filter
   std::size_t complete = 0;
   std::size_t missing = 0;
-  /// Number of runs not needed: the cell was precise enough, or its verdict known.
+  /// Number of runs that were not needed because the cell was precise enough or its verdict was
+  /// known.
   std::size_t not_needed = 0;
   /// Number of planned interim analyses of its verdict; 0 if there are none.
   std::size_t analyses_planned = 0;
@@ -63,14 +64,16 @@ struct CellAnalysis {
   Verdict verdict;  ///< verdict on the whole error by the leading moments
   /// Moments of the verdict: the first of kMoments that is stored.
   Moments leading = Moments::spread;
-  /// Leading moments first, each with pose, position and heading; may be empty.
+  /// NEES by each stored definition of the moments, the leading ones first, each for pose, position
+  /// and heading; may be empty.
   std::vector<NeesResult> nees;
   std::vector<std::uint64_t> runs;  ///< numbers of the complete runs, increasing
   ScoreTable scores;                ///< {complete run} scores
   /// {score} interval of the mean over infinitely many runs.
   std::vector<Interval> score_intervals;
-  std::vector<Frame::Column> scan_series;  ///< those of all_scan_series() that apply
-  Findings findings;                       ///< all other results, by the type of the metric
+  /// Series over the scans: those of all_scan_series() that apply.
+  std::vector<Frame::Column> scan_series;
+  Findings findings;  ///< all other results, by the type of the metric
 
   /// The result of a metric; nullptr where it does not apply.
   template <class T>

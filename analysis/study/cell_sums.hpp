@@ -63,8 +63,8 @@ class CellSums {
 
   double level_;
   ScoreTable scores_;
-  /// {all_scan_series()} means; empty if runs are drives of their own, since their scans are at
-  /// other times.
+  /// {all_scan_series()} mean over runs of each series. Empty if runs are drives of their own,
+  /// since their scans are at other times.
   std::vector<MeanOverTime> over_time_;
   std::vector<std::unique_ptr<MetricSums>> metrics_;  ///< sums of the metrics that have any
 };

@@ -25,9 +25,10 @@ struct ErrorsOverTime {
 
 /// The errors of one run and the deviations that the filter reports, in the same frame.
 struct ErrorTrace {
-  std::uint64_t run = 0;                         ///< number of the run in the study
-  std::array<std::vector<double>, 3> error;      ///< {component}{scan}
-  std::array<std::vector<double>, 3> deviation;  ///< {component}{scan}
+  std::uint64_t run = 0;                     ///< number of the run in the study
+  std::array<std::vector<double>, 3> error;  ///< {component}{scan} error of the estimate
+  /// {component}{scan} standard deviation that the filter reports.
+  std::array<std::vector<double>, 3> deviation;
   static constexpr auto members() {
     return std::tuple(&ErrorTrace::run, &ErrorTrace::error, &ErrorTrace::deviation);
   }

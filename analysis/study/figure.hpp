@@ -56,7 +56,7 @@ struct ChartMarks {
   std::size_t style = 0;  ///< style index for line_colour()
   Shape shape = Shape::line;
   double thickness = 0.0;             ///< [px] thickness of lines and points; 0: the usual one
-  std::vector<double> x, y;           ///< NaN: a gap in a line
+  std::vector<double> x, y;           ///< coordinates; NaN makes a gap in a line
   std::vector<double> width, height;  ///< diameters of ellipses
   std::vector<double> angle;          ///< [deg] angle of ellipses
   std::vector<Fact> facts;            ///< facts that the page shows; may be empty
@@ -90,7 +90,7 @@ struct Curve {
 struct ChartPanel {
   std::string label;  ///< label of the vertical axis, with unit
   ChartAxis axis;
-  std::vector<double> x;  ///< increasing
+  std::vector<double> x;  ///< coordinates on the horizontal axis, increasing
   std::vector<Curve> curves;
   std::vector<Band> bands;
   std::string cell = {};  ///< label of the only cell, with which the panel is hidden
@@ -146,7 +146,7 @@ Figure figure_of(std::string_view name, const Values& values = {});
 /// Kind of the vertical axis.
 enum class Scale {
   from_zero,
-  percent,  ///< 0 to 100
+  percent,  ///< from 0 to 100
   logarithmic,
   automatic,   ///< logarithmic if the values span more than a factor of 30, else from zero
   around_zero  ///< zero is in the middle

@@ -16,8 +16,9 @@ namespace montecarta::analysis {
 struct LineageSummary {
   /// {lag} mean over runs; NaN if all runs are too short.
   std::array<double, kLineageLags.size()> ancestors{};
-  double coalescence = kNaN;      ///< [s] mean over the runs with a common ancestor
-  double coalesced_share = kNaN;  ///< share of the scans from which the ancestry is followed
+  double coalescence = kNaN;  ///< [s] mean over the runs with a common ancestor
+  /// Share of the followed scans at which all particles have one common ancestor.
+  double coalesced_share = kNaN;
   /// Share of the mean squared position error that comes from the small number of particles; NaN if
   /// particles are not stored.
   double monte_carlo_share = kNaN;

@@ -19,7 +19,7 @@ namespace montecarta::analysis {
 struct LandmarkErrors {
   std::uint32_t runs = 0;       ///< number of runs with the landmark in the map
   std::uint32_t valid = 0;      ///< number of runs with a finite NEES
-  double rms = kNaN;            ///< [m] RMS error
+  double rms = kNaN;            ///< [m] RMS position error
   double anees = kNaN;          ///< [1] average NEES of two components
   Interval bounds{kNaN, kNaN};  ///< bounds of anees for `valid` runs
 };
@@ -57,7 +57,7 @@ class MapErrorSums {
   };
   std::string reason(bool known) const;
 
-  std::vector<LandmarkSums> landmarks_;  ///< {landmark}
+  std::vector<LandmarkSums> landmarks_;  ///< {landmark} sums over the runs
   std::size_t n_runs_ = 0, n_maps_ = 0, undefined_ = 0;
 };
 

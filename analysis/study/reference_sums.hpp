@@ -17,7 +17,7 @@ namespace montecarta::analysis {
 
 /// Comparison of the complete runs of a cell with one reference.
 struct ReferenceAnalysis {
-  std::vector<ReferenceScores> runs;  ///< {run}
+  std::vector<ReferenceScores> runs;  ///< {run} scores of each run
   /// [m] {fix} RMS raw distance over runs; empty if runs are drives of their own.
   std::vector<double> error_over_time;
 

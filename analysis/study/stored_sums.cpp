@@ -32,7 +32,7 @@ struct RunsOfGroup {
   };
   std::vector<RunStatus> status;
   std::vector<std::uint64_t> fingerprint;
-  std::vector<Failure> failures;  ///< {failed run}
+  std::vector<Failure> failures;  ///< {failed run} step and reason of the failure
   static constexpr auto members() {
     using Runs = RunsOfGroup;
     return std::tuple(&Runs::status, &Runs::fingerprint, &Runs::failures);

@@ -95,7 +95,8 @@ struct CellTask {
     return std::move(found.sums);
   }
 
-  /// Releases the sums, which hold the errors of many runs.
+  /// Fills the cell from its sums. They are released afterwards, because they hold the errors of
+  /// many runs.
   void put(CellSums sums) {
     sums.put(cell);
     cell.verdict.runs = cell.complete + cell.failures.size();

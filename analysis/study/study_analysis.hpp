@@ -46,8 +46,8 @@ struct StudyAnalysis {
   /// {interim analysis} number of runs; empty if there is only one.
   std::vector<std::uint64_t> runs_at_analyses;
   double duration = 0.0;            ///< [s] time of the last scan
-  std::vector<double> times;        ///< [s] {scan}
-  std::vector<double> joint_times;  ///< [s] {scan with joint estimates}
+  std::vector<double> times;        ///< [s] {scan} time of each scan
+  std::vector<double> joint_times;  ///< [s] {scan with joint estimates} time of each of these scans
   /// Whether the true path is known: without it there are no errors and no NEES.
   bool has_truth = true;
   std::size_t own_drives = 0;  ///< number of runs if each is a recorded drive of its own; else 0

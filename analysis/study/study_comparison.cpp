@@ -348,7 +348,7 @@ void write_comparison_csv(const StudyComparison& comparison,
 }
 
 std::vector<std::string> comparison_sentences(const Comparisons& comparisons) {
-  // Sorted by cell, in the order of the first score.
+  // The loop sorts the rows by cell. The cells keep the order that they have in the first score.
   std::vector<CellComparison> rows = comparisons.rows;
   std::vector<std::string> sentences;
   for (auto first = rows.begin(); first != rows.end();) {

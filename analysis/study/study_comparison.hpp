@@ -45,8 +45,9 @@ struct CellComparison {
   /// Expectation of a NEES, by which tables divide it; 1 for other scores.
   double expectation = 1.0;
   Wins wins{};
-  SignedRank rank{};         ///< signed-rank test of the differences
-  double rank_p_holm = 1.0;  ///< its p-value adjusted for all tests of the table
+  SignedRank rank{};  ///< signed-rank test of the differences
+  /// P-value of the signed-rank test, adjusted for all tests of the table.
+  double rank_p_holm = 1.0;
 
   /// The finding: "better", "worse" or "undecided"; "lower" or "higher" if neither direction is
   /// better. If only the tests over runs show it, and not the interval of the mean difference, it
@@ -90,7 +91,8 @@ WinMatrix win_matrix(const StudyAnalysis& study, const Score& score);
 /// A comparison of cells with a baseline and with each other.
 struct StudyComparison {
   Comparisons comparisons;
-  std::vector<WinMatrix> matrices;  ///< {score by which two cells or more are judged}
+  /// {score by which two cells or more are judged} comparisons of all cells.
+  std::vector<WinMatrix> matrices;
 };
 
 StudyComparison compare_study(const StudyAnalysis& study, const std::string& baseline,

@@ -66,11 +66,11 @@ std::vector<std::string> cautions(std::span<const CellAnalysis> cells,
 /// The runs of a cell in words: "40 complete", "2 FAILED, 38 complete", ...
 std::string runs_in_words(const CellAnalysis& cell);
 
-/// Consistent is good news; optimistic and inconsistent are bad news.
+/// Tone of an answer: consistent is good news; optimistic and inconsistent are bad news.
 Tone tone_of(Answer answer);
-/// The same, except that a slight deviation is neither.
+/// Tone of the answer of a verdict, except that a slight deviation is neither good nor bad news.
 Tone tone_of(const Verdict& verdict);
-/// Failed runs are bad news.
+/// Tone of the number of runs of a cell: failed runs are bad news.
 Tone tone_of_runs(const CellAnalysis& cell);
 
 /// The NEES ratio with its interval; "-" if it is not tested.
@@ -81,7 +81,7 @@ struct MeanText {
   std::string mean;    ///< mean with its interval, or alone if the scores have a heavy tail
   std::string median;  ///< median with its median_interval() if they have a heavy tail, else empty
 
-  /// Both in one text: "0.29 [0.22, 0.37]", "3.1 (heavy tail), median 0.4 [0.3, 0.6]".
+  /// Text of mean and median: "0.29 [0.22, 0.37]", "3.1 (heavy tail), median 0.4 [0.3, 0.6]".
   std::string text() const;
 };
 

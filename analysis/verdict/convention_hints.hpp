@@ -41,7 +41,7 @@ class ConventionHints {
  private:
   double components_ = 0.0;
   std::uint64_t runs_ = 0;
-  std::vector<SummedError> nees_;  ///< {kErrorConventions} sums
+  std::vector<SummedError> nees_;  ///< {kErrorConventions} sums of the NEES
 };
 
 /// A text that names the conventions other than `said` that fit the covariances of `cell`, and

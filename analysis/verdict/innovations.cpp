@@ -14,7 +14,8 @@
 namespace montecarta::analysis {
 namespace {
 
-constexpr std::size_t kLagsTogether = 24;  // number of lags, from 0, in whole registers
+// Number of lags, from lag 0 on, rounded up to whole registers.
+constexpr std::size_t kLagsTogether = 24;
 
 static_assert(kInnovationLags < kLagsTogether);
 

@@ -35,7 +35,7 @@ struct LargestInnovation {
   double nis = kNaN;
   double dof = kNaN;
   std::uint64_t run = 0;
-  double time = kNaN;  ///< [s]
+  double time = kNaN;  ///< [s] time of the scan
   double ratio_without = kNaN;
   Whiteness whiteness_without = Whiteness::untested;
   Answer answer_without = Answer::untested;
@@ -44,10 +44,11 @@ struct LargestInnovation {
 /// Test of the NIS, which needs no truth. For a consistent filter its expectation is 1 for each
 /// degree of freedom, and the innovations are white: independent from scan to scan.
 struct Innovations {
-  /// {scan} NIS over degrees of freedom, over runs; NaN if there is none.
+  /// {scan} NIS divided by its degrees of freedom, average over runs; NaN if there is none.
   std::vector<double> average;
   std::vector<Interval> bounds;  ///< {scan} chi-square bounds of the average
-  double share_inside = 0.0;     ///< share inside the bounds, of the scans with a degree of freedom
+  /// Share of the scans with a degree of freedom whose average is inside the bounds.
+  double share_inside = 0.0;
   /// NIS over degrees of freedom: that of the verdict if it judges the size, else that of all runs
   /// and scans together.
   double ratio = kNaN;
@@ -135,8 +136,9 @@ class InnovationSums {
     void judge_size(std::span<const double> times, double level, double within,
                     Innovations& result) const;
 
-    SummedError nis_;                 ///< {scan} sums of the NIS
-    std::vector<Products> products_;  ///< {lag} from 0
+    SummedError nis_;  ///< {scan} sums of the NIS
+    /// {lag from 0} sums over pairs of scans that are that far apart.
+    std::vector<Products> products_;
     /// {scan} deviations of the run that is added, the last scan first, and 1 where there is a
     /// deviation.
     std::vector<double> deviations_, is_there_;

@@ -49,9 +49,9 @@ class RunGroups {
 
   std::size_t dimension_ = 0;
   std::vector<std::size_t> ends_;
-  std::vector<std::vector<double>> group_;  ///< {run of the group}{scan, component}
-  SummaryOf spread_, spread_unit_;          ///< over groups, sums over parts
-  SummaryOf tails_, tails_unit_;            ///< over groups, means over errors
+  std::vector<std::vector<double>> group_;  ///< {run of the group}{scan, component} whitened errors
+  SummaryOf spread_, spread_unit_;          ///< summaries over groups of sums over parts
+  SummaryOf tails_, tails_unit_;            ///< summaries over groups of means over errors
 };
 
 }  // namespace montecarta::analysis

@@ -316,8 +316,8 @@ std::string ratio_words(const Verdict& verdict, Side direction) {
          (time.empty() ? "" : ", " + time);
 }
 
-/// The findings besides the leading one: "bias, correlation, between runs". Those of a stretch are
-/// not told from those of the whole drive, which the sentence does.
+/// Text of the findings besides the leading one: "bias, correlation, between runs". Unlike the
+/// sentence, it does not distinguish findings in a stretch from those over the whole drive.
 std::string also_words(const Verdict& verdict) {
   constexpr std::array<std::pair<const char*, std::array<Family, 2>>, 4> kFindings = {
       {{"bias", {Family::bias, Family::bias_by_stretch}},
@@ -446,7 +446,7 @@ std::string consistent_words(const Verdict& verdict) {
                         : tails);
 }
 
-/// Empty if there are enough runs to judge more than single scans.
+/// Text that says that only single scans are judged; empty if there are enough runs to judge more.
 std::string scans_alone_words(const Verdict& verdict) {
   if (complete_runs(verdict) >= kFewestJudgedRuns) return "";
   return "of fewer than " + std::to_string(kFewestJudgedRuns) +

@@ -26,7 +26,7 @@ enum class Family {
   bias,                    ///< mean error of one component, in deviations
   bias_by_stretch,         ///< mean error of one component in one eighth, in deviations
   correlation,             ///< correlation of two components beyond the reported one
-  correlation_by_stretch,  ///< the same correlation in one eighth
+  correlation_by_stretch,  ///< correlation of two components in one eighth beyond the reported one
   between_runs,            ///< standard deviation of the scales that runs have of their own
   tails                    ///< fourth moment and largest error: a finding, no part of the answer
 };
@@ -122,7 +122,7 @@ enum class Answer {
   /// Squared errors are larger in some parts and smaller in others than claimed; or there is only a
   /// bias, a correlation, a spread between runs, or an error of a component claimed to be exact.
   inconsistent,
-  undecided  ///< none of these is shown: more runs are needed
+  undecided  ///< no deviation and no consistency is shown: more runs are needed
 };
 
 /// Name of an answer for readers and files: "consistent", ...

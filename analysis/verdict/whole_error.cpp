@@ -17,13 +17,13 @@ namespace {
 
 constexpr std::size_t kFewestKeptRuns = 50, kMostKeptRuns = 256;
 
-constexpr std::size_t kMostKeptErrors = 8'000'000;  // 64 MB
+constexpr std::size_t kMostKeptErrors = 8'000'000;  // largest number of errors that are kept, 64 MB
 
 /// The fewest errors in which a repeat is detected. Shorter sequences may be equal by chance, since
 /// files have few digits.
 constexpr std::size_t kFewestErrorsOfARepeat = 8;
 
-/// {number} Means of one run in single stretches and over the whole drive.
+/// Means of several numbers of one run, in each stretch and over the whole drive.
 class Means {
  public:
   explicit Means(std::size_t numbers) : whole_(numbers), stretch_(numbers) {}

@@ -128,19 +128,19 @@ class WholeError {
   std::size_t dimension_ = 0;
   std::vector<std::size_t> ends_;  ///< {stretch} 1 + its last scan
   SummedError nees_;
-  std::vector<SummaryOf> stretch_;  ///< {stretch} ratio of a run
-  /// {stretch} ratio of a run minus its ratio over the whole run.
+  std::vector<SummaryOf> stretch_;  ///< {stretch} ratio of each run in the stretch
+  /// {stretch} ratio of each run in the stretch minus its ratio over the whole drive.
   std::vector<SummaryOf> against_run_;
-  std::vector<OverDrive> component_, bias_;  ///< {component}
+  std::vector<OverDrive> component_, bias_;  ///< {component} squared errors, and errors
   std::vector<OverDrive> correlation_;       ///< {pair of components} products of whitened errors
   /// {component} means of whitened errors, if pairs are tested.
   std::vector<OverDrive> whitened_mean_;
   RunGroups groups_;
-  /// {family}{member} on the size, on each component, on each stretch.
+  /// {family}{member} bets on the size, on each component and on each stretch.
   std::vector<std::vector<Bets>> bets_;
   Largest largest_;
   std::vector<Maximum> exact_;  ///< {component} largest error where the deviation is 0
-  /// {run} fingerprint of its errors, and number of the run.
+  /// {run} fingerprint of the errors of a run, and number of that run.
   std::vector<std::uint64_t> fingerprints_, numbers_;
   ErrorsOfRuns whitened_;  ///< {run} whitened errors of the first runs
 };

@@ -25,7 +25,7 @@ Samples samples_of(const std::vector<double>& errors, Eigen::Index dimension) {
   return whole.leftCols(n);
 }
 
-/// The mean of u u' over scans and runs, without its diagonal.
+/// Returns the mean of u u' over scans and runs, without its diagonal.
 Eigen::MatrixXd mean_products(const std::vector<Samples>& runs, std::size_t first,
                               Eigen::Index dimension) {
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(dimension, dimension);
@@ -38,7 +38,7 @@ Eigen::MatrixXd mean_products(const std::vector<Samples>& runs, std::size_t firs
   return sum / n;
 }
 
-/// The eigenvector of the eigenvalue that is farthest from zero.
+/// Returns the eigenvector of the eigenvalue that is farthest from zero.
 Eigen::VectorXd farthest_direction(const Eigen::MatrixXd& products) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(products);
   Eigen::Index farthest = 0;
@@ -46,7 +46,7 @@ Eigen::VectorXd farthest_direction(const Eigen::MatrixXd& products) {
   return solver.eigenvectors().col(farthest);
 }
 
-/// Mean over scans of the products of different components of a run along a direction.
+/// Returns the mean over scans of the products of different components of a run along a direction.
 double along(const Eigen::VectorXd& direction, const Samples& run) {
   const Eigen::ArrayXd squares =
       (direction.transpose() * run).array().square().transpose() -
@@ -56,7 +56,7 @@ double along(const Eigen::VectorXd& direction, const Samples& run) {
   return squares.mean();
 }
 
-/// The two components with the largest product in a direction.
+/// Returns the two components with the largest product in a direction.
 std::pair<Eigen::Index, Eigen::Index> pair_of(const Eigen::VectorXd& direction) {
   Eigen::Index first = 0, second = 0;
   direction.cwiseAbs().maxCoeff(&first);

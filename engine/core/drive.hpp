@@ -37,7 +37,8 @@ struct Detection {
   static constexpr std::size_t kMost = 2;            ///< largest number of components
   static constexpr std::int32_t kClutter = -1;       ///< identity of a false alarm
   static constexpr std::int32_t kUnidentified = -2;  ///< identity if it is not known
-  std::array<double, kMost> values{};                ///< for instance range [m], bearing [rad]
+  /// Values of the components, for instance range [m], bearing [rad].
+  std::array<double, kMost> values{};
   std::int32_t identity =
       kClutter;  ///< landmark of the world; filters may only use it with known association
 
@@ -50,10 +51,10 @@ using Scan = std::span<const Detection>;
 
 /// An independent measurement of the vehicle's path, against which a recorded drive is evaluated.
 struct ReferencePath {
-  std::string name;                       ///< for instance "gps"
-  std::vector<double> time;               ///< [s] {fix} increasing
-  std::vector<Eigen::Vector2d> position;  ///< [m] {fix}
-  std::vector<double> heading;            ///< [rad] {fix} empty if it is not measured
+  std::string name;                       ///< name, for instance "gps"
+  std::vector<double> time;               ///< [s] {fix} time, increasing
+  std::vector<Eigen::Vector2d> position;  ///< [m] {fix} measured position
+  std::vector<double> heading;  ///< [rad] {fix} measured heading; empty if it is not measured
   /// {fix} covariance of the error, (m, m, rad)^2; empty if it is not known. Without headings, only
   /// the block of the position counts.
   std::vector<Eigen::Matrix3d> covariance = {};

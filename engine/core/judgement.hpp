@@ -12,7 +12,7 @@ inline constexpr double kUsualLevel = 0.95;
 /// Default margin r: a filter is consistent if the ratio of its NEES to the expected one lies in
 /// [1/r, r].
 inline constexpr double kUsualMargin = 1.1;
-/// The same in the spelling of a study.
+/// kUsualMargin in the spelling of a study file.
 inline constexpr const char* kUsualMarginText = "1.1";
 inline constexpr double kLeastMargin = 1.001, kMostMargin = 100.0;
 

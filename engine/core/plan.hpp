@@ -23,16 +23,19 @@ namespace montecarta::engine {
 struct ColumnSelection {
   bool covariance =
       true;  ///< pose_covariance and, with a mixture, pose_mean_mixture, pose_covariance_mixture
-  bool ancestry = true;        ///< ancestor
-  bool particles = false;      ///< particle_pose, log_weight
-  bool association = false;    ///< association_correct, _wrong, _new_again, _missed, _clutter
-  bool map = false;            ///< map_mean, map_covariance, map_seen, at every scan
-  bool final_map = false;      ///< final_map_mean, final_map_covariance, final_map_seen, at the end
-  bool joint = false;          ///< joint_mean, joint_covariance of filters with a joint estimate
-  bool observability = false;  ///< filters' own columns about observability
+  bool ancestry = true;    ///< column ancestor
+  bool particles = false;  ///< columns particle_pose and log_weight
+  /// Columns association_correct, _wrong, _new_again, _missed and _clutter.
+  bool association = false;
+  bool map = false;  ///< columns map_mean, map_covariance and map_seen, at every scan
+  /// Columns final_map_mean, final_map_covariance and final_map_seen, at the last scan.
+  bool final_map = false;
+  bool joint = false;  ///< columns joint_mean and joint_covariance of filters with a joint estimate
+  bool observability = false;    ///< columns about observability that filters declare themselves
   std::size_t joint_scans = 16;  ///< record.joint_scans: number of scans (joint_scans_of())
   bool scans_only = false;       ///< record.rate = scan: rows of `time` only at scans
-  /// record.full_runs: in_full() is stored of this number of runs, the first ones of the study.
+  /// record.full_runs: number of first runs of the study that are stored with the columns of
+  /// in_full().
   std::uint64_t full_runs = 0;
   /// Sums over groups of kRunsOfAGroup runs are stored in place of their rows.
   bool sums = false;
@@ -41,7 +44,7 @@ struct ColumnSelection {
 /// Consecutive runs of a study, by their numbers, that are summed up before anything else: groups
 /// begin at the multiples of this number.
 inline constexpr std::uint64_t kRunsOfAGroup = 4096;
-/// Number of first runs whose rows are stored beside sums, at least.
+/// Least number of first runs whose rows are stored beside sums.
 inline constexpr std::uint64_t kRunsBesideSums = 16;
 
 /// The error of another program's estimate, which a file holds in place of our own columns.
@@ -54,16 +57,16 @@ struct ImportedError {
 
 /// One filter in one setting, repeated in runs; one curve of a figure.
 struct Cell {
-  std::string label;      ///< unique in the study, from the settings that differ: "fastslam2_m100"
-  std::string filter;     ///< name in study files, for instance "fastslam2"
-  std::string long_name;  ///< for instance "FastSLAM II, 100 particles"
-  std::size_t particles = 0;  ///< 0 if it is not a particle filter
+  std::string label;  ///< label, unique in the study, of the settings that differ: "fastslam2_m100"
+  std::string filter;         ///< name in study files, for instance "fastslam2"
+  std::string long_name;      ///< name for readers, for instance "FastSLAM II, 100 particles"
+  std::size_t particles = 0;  ///< number of particles; 0 if it is not a particle filter
   Capabilities reports;
   std::size_t landmarks = 0;                   ///< number of rows of the map columns
   std::optional<ImportedError> imported = {};  ///< nullopt for our own filters
   /// All resolved settings for the file.
   std::vector<std::pair<std::string, std::string>> settings;
-  std::function<std::unique_ptr<SlamFilter>()> make_filter;  ///< callable from any thread
+  std::function<std::unique_ptr<SlamFilter>()> make_filter;  ///< makes the filter, on any thread
 };
 
 /// Called between two rounds (monte_carlo.hpp), when the first `runs` runs of a cell have ended.
@@ -83,7 +86,7 @@ struct StudyPlan {
   std::vector<Cell> cells;
   ColumnSelection columns;
   std::shared_ptr<const DriveSource> drives;
-  /// Rule by which a cell stops early; empty: never. Only for files with all runs.
+  /// Rule by which a cell stops early; empty: never. Only files with all runs may have one.
   EnoughRuns is_enough;
   /// Returns the true landmarks [m] of a run, as many as in the itinerary, if every run has its
   /// own; empty if all runs have those of the itinerary. It may be called from any thread.

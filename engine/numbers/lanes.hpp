@@ -44,8 +44,8 @@ struct alignas(64) Lanes {
     }
     return lanes;
   }
-  /// {number(0), ..., number(7)}, composed in registers. If stored one by one, numbers could not be
-  /// loaded together before they reach the cache.
+  /// Returns {number(0), ..., number(7)}, composed in registers. If stored one by one, numbers
+  /// could not be loaded together before they reach the cache.
   template <class Function>
   [[gnu::always_inline]] static Lanes composed(const Function& number) {
     const auto compose = [&]<std::size_t... l>(std::size_t first, std::index_sequence<l...>) {
@@ -126,7 +126,7 @@ inline LaneMask operator&&(const LaneMask& a, const LaneMask& b) {
 inline LaneMask operator!(const LaneMask& a) {
   return by_register([](const auto& x) { return !x; }, a);
 }
-/// a in the lanes of the mask, else b.
+/// Returns a in the lanes of the mask, and b in the others.
 [[gnu::always_inline]] inline Lanes select(const LaneMask& mask, const Lanes& a, const Lanes& b) {
   return by_register(
       [](const auto& m, const auto& x, const auto& y) { return xsimd::select(m, x, y); }, mask, a,

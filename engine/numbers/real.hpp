@@ -33,7 +33,7 @@ using std::sqrt;
 inline double select(bool mask, double a, double b) { return mask ? a : b; }
 inline bool any(bool mask) { return mask; }
 
-/// number(lane) in every lane.
+/// Returns number(lane) in every lane.
 template <class Real, class Function>
 [[gnu::always_inline]] inline Real composed(const Function& number) {
   if constexpr (std::is_same_v<Real, Lanes>) {
@@ -52,7 +52,7 @@ inline void set(Lanes& value, std::size_t lane, double number) {
   reinterpret_cast<double*>(value.part.data())[lane] = number;
 }
 
-/// sqrt(x^2 + y^2). The hypot() of C libraries rounds differently on different processors.
+/// Returns sqrt(x^2 + y^2). The hypot() of C libraries rounds differently on different processors.
 template <class Real>
 Real length(const Real& x, const Real& y) {
   return sqrt(Real(x * x + y * y));
@@ -93,11 +93,11 @@ inline Lanes log(const Lanes& a) {
 inline Lanes sqrt(const Lanes& a) {
   return by_register([](const auto& x) { return xsimd::sqrt(x); }, a);
 }
-/// exp(a) for a <= 709.
+/// Returns exp(a) for a <= 709.
 inline Lanes exp(const Lanes& a) {
   return by_register([](const auto& x) { return register_math::exp(x); }, a);
 }
-/// a b + c, rounded once.
+/// Returns a b + c, rounded once.
 [[gnu::always_inline]] inline Lanes fma(const Lanes& a, const Lanes& b, const Lanes& c) {
   return by_register([](const auto& x, const auto& y,
                         const auto& z) { return register_math::multiply_add(x, y, z); },

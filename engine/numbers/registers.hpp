@@ -28,7 +28,7 @@ using BitsOf = xsimd::batch<std::uint64_t, typename R::arch_type>;
 // xsimd 8 rounds fma() twice on AVX-512 and on plain SSE, and fnma() on ARM. The names differ from
 // those of xsimd, which argument-dependent look-up would prefer.
 
-/// a b + c, rounded once.
+/// Returns a b + c, rounded once.
 template <class R>
 [[gnu::always_inline]] inline R multiply_add(const R& a, const R& b, const R& c) {
 #ifdef __AVX512F__
@@ -40,7 +40,7 @@ template <class R>
   return xsimd::fma(a, b, c);
 }
 
-/// c - a b, rounded once.
+/// Returns c - a b, rounded once.
 template <class R>
 [[gnu::always_inline]] inline R negative_multiply_add(const R& a, const R& b, const R& c) {
 #ifdef __AVX512F__
@@ -55,14 +55,14 @@ template <class R>
   return xsimd::fnma(a, b, c);
 }
 
-/// -x, also for zeros: xsimd 8 computes 0 - x on AVX-512.
+/// Returns -x, also for zeros: xsimd 8 computes 0 - x on AVX-512.
 template <class R>
 [[gnu::always_inline]] inline R negative(const R& x) {
   return x ^ R(-0.0);
 }
 
-/// The lesser and the greater; b if one is NaN or both are zero. The instructions of ARM return
-/// NaN.
+/// These functions return the lesser and the greater; b if one is NaN or both are zero. The
+/// instructions of ARM return NaN.
 template <class R>
 [[gnu::always_inline]] inline R lesser(const R& a, const R& b) {
 #ifdef __aarch64__
@@ -241,7 +241,7 @@ template <class R>
   const R low = multiply_add(s, half_square + tail, k * R(kLn2Low));
   const R finite = multiply_add(k, R(kLn2High), f - (half_square - low));
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  const R positive = xsimd::select(x < R(kInfinity), finite, x);  // infinity and NaN
+  const R positive = xsimd::select(x < R(kInfinity), finite, x);  // keeps infinity and NaN
   const R signless =
       xsimd::select(x < R(std::numeric_limits<double>::min()), R(-kInfinity), positive);
   return xsimd::select(x < R(0.0), R(std::numeric_limits<double>::quiet_NaN()), signless);

@@ -62,7 +62,7 @@ struct BlockLayout {
   }
 };
 
-/// Block b of a population in which particle i is a copy of particle source[i] of `from`.
+/// Returns block b of a population in which particle i is a copy of particle source[i] of `from`.
 template <class Real, class Block>
 Block gather_block(std::span<const Block> from, std::span<const std::uint32_t> source,
                    std::size_t b) {

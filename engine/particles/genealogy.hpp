@@ -55,12 +55,12 @@ class Genealogy {
   }
 
  private:
-  static constexpr std::size_t kLongest = 256;           // most generations
-  static constexpr std::size_t kMostNumbers = 1U << 22;  // most indices, 16 MiB
+  static constexpr std::size_t kLongest = 256;  // largest number of generations that are kept
+  static constexpr std::size_t kMostNumbers = 1U << 22;  // largest number of indices, 16 MiB
   std::size_t particles_;
-  // {generation} parents; reused after forget().
+  // {generation} parents of all particles. The memory is reused after forget().
   std::vector<UntouchedColumn<std::uint32_t>> parents_;
-  std::size_t kept_ = 0;  // number of generations
+  std::size_t kept_ = 0;  // number of generations that are kept
   std::uint32_t forgotten_ = 0;
 };
 

@@ -33,8 +33,8 @@ struct DescendantRow {
   std::size_t first_child, end;
 };
 
-/// Parent i is the first particle up to which the shares sum to more than place(i). The places must
-/// be in increasing order.
+/// Draws parents: parent i is the first particle up to which the shares sum to more than place(i).
+/// The places must be in increasing order.
 template <class Share, class Place>
 void sweep(const DescendantRow& family, const Share& share, const Place& place, Parents parents) {
   std::size_t parent = family.first;
@@ -110,7 +110,8 @@ void stratified(Weights weights, const StepContext& context, Parents parents) {
       [&](std::size_t i) { return (static_cast<double>(i) + uniform(context, i)) / n; }, parents);
 }
 
-/// The ordered uniform numbers are arrival times of a Poisson process divided by the last one.
+/// Draws by ordered uniform numbers, which are the arrival times of a Poisson process divided by
+/// the last one.
 void multinomial(Weights weights, const StepContext& context, Parents parents) {
   const auto waiting = [&](std::size_t i) { return -std::log(uniform(context, i)); };
   double total = 0.0;

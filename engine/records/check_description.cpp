@@ -15,7 +15,8 @@ namespace montecarta::engine {
 namespace {
 
 constexpr std::size_t kLongestLabel = 1000;
-constexpr std::uint32_t kMostSteps = 1U << 27U;  // of a run; more would take days to process
+// Largest number of steps of a run; more would take days to process.
+constexpr std::uint32_t kMostSteps = 1U << 27U;
 
 bool are_finite(const std::vector<double>& values) {
   return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
@@ -33,7 +34,7 @@ bool increases(const std::vector<T>& values) {
 /// Throws StudyError with a description of the damage unless the condition holds.
 using Check = std::function<void(bool, const std::string&)>;
 
-/// Texts that are shown within one line of a table, a figure or a comment.
+/// Checks the texts that are shown within one line of a table, a figure or a comment.
 void check_texts(const ResultDescription& d, const Check& check) {
   const auto require_line = [&](const std::string& text) {
     check(visible(text, "\t") == text, "a control character in '" + visible(text) + "'");
@@ -176,7 +177,7 @@ void check_columns(const StoredCell& cell, const Check& check) {
   check(cell.label.size() <= kLongestLabel, "the label of a cell is too long");
 }
 
-/// The row axis of a covariance, which has the length of its column axis.
+/// Returns the row axis of a covariance, which has the length of its column axis.
 Axis row_axis(Axis axis) {
   if (axis == Axis::state_column) return Axis::state;
   return axis == Axis::error_component_column ? Axis::error_component : axis;

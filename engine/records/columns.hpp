@@ -65,7 +65,7 @@ struct Column {
   Element element = Element::f64;
   std::vector<Axis> axes;
   std::vector<std::size_t> shape;  ///< one length per axis; empty = one value per run
-  std::string units;  ///< UDUNITS style: "m", "rad", "1"; "m, m, rad" if components differ
+  std::string units;  ///< units in UDUNITS style: "m", "rad", "1"; "m, m, rad" if components differ
   std::string long_name;
 
   std::size_t elements() const;
@@ -85,7 +85,7 @@ std::span<const ColumnGroup> column_groups();
 /// derived from this table.
 struct ColumnKind {
   const char* name;
-  const char* group;  ///< one of column_groups()
+  const char* group;  ///< name of one of column_groups()
   Element element;
   std::vector<Axis> axes;
   const char* units;
@@ -106,8 +106,9 @@ ColumnSelection in_full(ColumnSelection selection);
 /// Lengths of the axes of a cell's columns.
 struct AxisLengths {
   std::size_t time = 0, scan = 0, joint = 0, particle = 0;
-  std::optional<std::size_t> landmark;         ///< nullopt if not known
-  std::optional<std::size_t> error_component;  ///< nullopt if not known
+  std::optional<std::size_t> landmark;  ///< number of landmarks; nullopt if unknown
+  /// Number of components of the error; nullopt if unknown.
+  std::optional<std::size_t> error_component;
 };
 /// Length of an axis; nullopt if it depends on the landmarks or the error, and those are not known.
 std::optional<std::size_t> length_of(Axis axis, const AxisLengths& lengths);

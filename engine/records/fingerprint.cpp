@@ -4,8 +4,8 @@
 #include "engine/errors.hpp"
 #include "engine/text/visible_text.hpp"
 
-// Inlined, so that it is compiled for the instruction set of the other files, which makes it three
-// times faster than the shared library.
+// XXH3 is inlined, so that it is compiled for the instruction set of the other files, which makes
+// it three times faster than the shared library.
 #define XXH_INLINE_ALL
 #include <openssl/evp.h>
 #include <xxhash.h>

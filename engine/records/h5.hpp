@@ -84,8 +84,8 @@ void write_text(const Handle& dataset, const std::string& text);
 std::optional<std::uint64_t> place(const Handle& dataset);
 /// Size of the elements in the file [byte].
 std::uint64_t stored_bytes(const Handle& dataset);
-/// Throws StudyError also if the file is too small for that many elements, so that memory can be
-/// allocated for them.
+/// Lengths of the axes of a dataset. Throws StudyError also if the file is too small for that many
+/// elements, so that memory can be allocated for them.
 Shape shape(const Handle& dataset);
 /// Stored type of the elements; nullopt if it is not one of Element.
 std::optional<Element> element(const Handle& dataset);

@@ -23,10 +23,10 @@ enum class Claim : std::uint8_t { sole, attempt };
 struct OpenResult {
   PosixFile file;  ///< OUT.h5.part, or OUT.h5 itself if it was complete already
   ResultSlabs slabs;
-  std::vector<std::vector<RunStatus>> status;  ///< {cell}{run index}
-  std::vector<bool> truth_stored;              ///< {run index}
-  std::vector<std::string> notes;              ///< messages for the user
-  Existing existing = Existing::refuse;        ///< treatment of an older OUT.h5 when finishing
+  std::vector<std::vector<RunStatus>> status;  ///< {cell}{run index} status of each run
+  std::vector<bool> truth_stored;        ///< {run index} whether the true path of the run is stored
+  std::vector<std::string> notes;        ///< messages for the user
+  Existing existing = Existing::refuse;  ///< treatment of an older OUT.h5 when finishing
   Claim claim = Claim::sole;
 };
 

@@ -12,7 +12,8 @@ namespace montecarta::engine {
 /// a known major version, or if a required part cannot be read or is inconsistent
 /// (check_description()).
 ResultDescription read_description(const h5::Handle& file, const std::filesystem::path& path);
-/// The same, of a file that is not open yet, after checking its seal.
+/// Checks the seal of a file that is not open yet, and reads its description like the function
+/// above.
 ResultDescription read_description(const std::filesystem::path& path);
 
 }  // namespace montecarta::engine

@@ -66,8 +66,8 @@ struct ResultDescription {
   std::uint64_t study_runs = 0;     ///< number of runs of the whole study
   std::uint64_t full_runs = 0;      ///< number of first runs of the study that are stored in full
   std::vector<std::uint64_t> runs;  ///< numbers of the runs in this file, increasing
-  std::vector<double> times;        ///< [s] {row of `time`}
-  std::vector<double> scan_times;   ///< [s] {scan}
+  std::vector<double> times;        ///< [s] {row of `time`} time of each row
+  std::vector<double> scan_times;   ///< [s] {scan} time of each scan
   std::vector<std::uint32_t> scan_steps;   ///< step after which each scan is taken
   std::vector<std::uint32_t> scan_rows;    ///< row of `time` at which each scan is taken
   std::vector<std::uint32_t> joint_scans;  ///< scans at which joint estimates are stored
@@ -94,8 +94,8 @@ struct ResultDescription {
 /// The description of the result file of a plan.
 ResultDescription describe(const StudyPlan& plan, const TextPairs& provenance);
 
-/// Why `b`, which describes the file `path`, is not of the same study and layout as `a`, worded
-/// "place: problem (why): remedy"; nullopt if it is. Their runs may differ.
+/// States why `b`, which describes the file `path`, is not of the same study and layout as `a`,
+/// worded "place: problem (why): remedy"; nullopt if it is. Their runs may differ.
 std::optional<std::string> difference(const ResultDescription& a, const ResultDescription& b,
                                       const std::filesystem::path& path);
 

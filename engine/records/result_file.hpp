@@ -54,7 +54,8 @@ class ResultFile {
   /// Returns whether errors are known, from true poses or from imported estimates.
   bool has_errors() const;
 
-  std::vector<RunStatus> status(const StoredCell& cell) const;  ///< {run of the file}
+  /// {run of the file} status of each run.
+  std::vector<RunStatus> status(const StoredCell& cell) const;
   /// Throws StudyError if the bytes of run index `i` of `cell`, including its status and true path,
   /// do not match the stored fingerprints. A file without a seal is not checked, because another
   /// program may have rewritten it.

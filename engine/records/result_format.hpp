@@ -14,11 +14,12 @@ inline constexpr std::uint64_t kMajor = 1;           ///< increased when a meani
 inline constexpr std::uint64_t kMinor = 10;          ///< increased when something is added
 inline constexpr std::size_t kSessionsBytes = 4096;  ///< size of the log of resumptions
 inline constexpr const char* kSums = "sums";         ///< group of the sums over groups of runs
-/// Dataset in the timing of a cell: of every run in sums.
+/// Dataset in the timing of a cell with the processor time of every run in sums.
 inline constexpr const char* kSumSeconds = "sums_cpu_seconds";
 inline constexpr const char* kFull = "full";  ///< group of a cell for the columns of full runs only
-inline constexpr const char* kFullRun = "full_run";    ///< first axis of those columns
-inline constexpr const char* kFullRuns = "full_runs";  ///< attribute: their number in the study
+inline constexpr const char* kFullRun = "full_run";  ///< first axis of those columns
+/// Attribute: number of full runs in the study.
+inline constexpr const char* kFullRuns = "full_runs";
 /// Members of the group of a cell that are no columns.
 inline constexpr std::array<std::string_view, 6> kBesideColumns = {
     "status", "failure_reason", "failure_step", "fingerprint", kFull, "settings"};

@@ -28,7 +28,7 @@ struct CellSlabs {
   std::vector<Slab> columns;      ///< slabs in the order of StoredCell::columns
   std::size_t usual_columns = 0;  ///< number of columns that every run has
   Slab failure_reason, failure_step, fingerprint, cpu_seconds, status;
-  Slab full_fingerprint;  ///< has no runs if full runs have no further columns
+  Slab full_fingerprint;  ///< fingerprints; has no runs if full runs have no further columns
 };
 
 /// The slabs of the true paths.
@@ -40,8 +40,8 @@ struct TruthSlabs {
 /// The slabs of a result file, with which runs are copied without HDF5.
 struct ResultSlabs {
   std::optional<TruthSlabs> truth;  ///< nullopt if the truth is unknown
-  Slab wall_seconds;                ///< one value for all runs
-  Slab sessions;                    ///< one text for all runs
+  Slab wall_seconds;                ///< wall time, one value for all runs
+  Slab sessions;                    ///< log of resumptions, one text for all runs
   std::vector<CellSlabs> cells;
   std::vector<Slab> sums;         ///< {cell} sums of all groups; empty if the file has none
   std::vector<Slab> sum_seconds;  ///< {cell} processor time of every run in them [s]

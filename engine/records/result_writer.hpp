@@ -73,14 +73,15 @@ class ResultWriter {
   void write_poses(std::size_t run_index, const Drive& drive, Fingerprint& fingerprint) const;
   void write_landmarks(std::size_t run_index, Fingerprint& fingerprint) const;
 
-  std::filesystem::path path_;  ///< final name
+  std::filesystem::path path_;  ///< final name of the file
   OpenResult result_;
   bool scans_only_;
   std::vector<std::uint32_t> scan_steps_;
   std::function<std::vector<Eigen::Vector2d>(std::uint64_t)> own_landmarks_;
   std::uint64_t first_run_;
-  std::vector<std::vector<std::atomic<RunStatus>>> status_;  ///< {cell}{run index}
-  std::vector<std::atomic<bool>> truth_stored_;              ///< {run index}
+  /// {cell}{run index} status of each run.
+  std::vector<std::vector<std::atomic<RunStatus>>> status_;
+  std::vector<std::atomic<bool>> truth_stored_;  ///< {run index} whether the true path is stored
 };
 
 }  // namespace montecarta::engine

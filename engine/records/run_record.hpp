@@ -115,7 +115,7 @@ class RunRecord {
 
   /// Column `c` of the layout as stored in the file, row by row in the byte order of the machine.
   std::span<const std::byte> bytes(std::size_t c) const;
-  /// The same bytes as elements of type T, which must have the element size of the column.
+  /// Column `c` as elements of type T, which must have the element size of the column.
   template <class T>
   std::span<T> column(std::size_t c) {
     const Column& described = layout_->columns()[c];

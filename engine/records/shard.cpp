@@ -53,7 +53,7 @@ std::vector<Slab> slabs_of_cell(const CellSlabs& cell) {
 struct Stretch {
   const PosixFile& file;
   const std::vector<Slab>& slabs;
-  std::size_t first;  ///< run index
+  std::size_t first;  ///< index of the first run in its file
 };
 
 /// Copies slab by slab, since consecutive runs are contiguous in a slab. A run that is stored in

@@ -20,7 +20,7 @@ struct Shard {
   std::uint64_t first_run = 0;               ///< number of the run at run index 0
   std::vector<std::uint64_t> complete_runs;  ///< numbers of the runs that are missing in no cell
   TextPairs provenance;
-  double wall_seconds = 0.0;  ///< [s]
+  double wall_seconds = 0.0;  ///< [s] wall time of all sessions
 
   std::size_t index(std::uint64_t run) const { return run - first_run; }
 };
@@ -61,7 +61,7 @@ void copy_truth(const PosixFile& from, const ResultSlabs& source, const PosixFil
 struct MergeSummary {
   std::uint64_t runs = 0;
   std::size_t cells = 0;
-  std::uint64_t bytes = 0;         ///< size of the new file
+  std::uint64_t bytes = 0;         ///< [byte] size of the new file
   std::vector<std::string> notes;  ///< messages for the user, e.g. about different builds
 };
 

@@ -125,7 +125,7 @@ namespace {
 /// A result with sums from which others are made.
 struct SumShard : Shard {
   ResultDescription description;
-  std::vector<std::vector<SumGroup>> groups;  ///< {cell}
+  std::vector<std::vector<SumGroup>> groups;  ///< {cell} groups of each cell
 };
 
 SumShard open_sum_shard(const fs::path& path) {
@@ -172,7 +172,8 @@ struct Source {
   std::size_t group = 0;
 };
 
-/// {group from first_run on} Sources without a shard are missing.
+/// Returns {group from first_run on} the source of each group. A group is missing if its source has
+/// no shard.
 std::vector<Source> sources_of(const std::vector<SumShard>& shards, std::uint64_t first_run,
                                std::uint64_t last_run) {
   std::vector<Source> sources((last_run - first_run + kRunsOfAGroup - 1) / kRunsOfAGroup);

@@ -39,7 +39,7 @@ std::vector<std::uint64_t> read_sums(const PosixFile& file, const SumGroup& grou
 struct NewGroup {
   SumGroup head;
   std::vector<std::uint64_t> sums;
-  std::vector<double> cpu_seconds;  ///< {run}, which is no function of the study
+  std::vector<double> cpu_seconds;  ///< {run} [s] processor time, which is no function of the study
 };
 
 /// Writes the result of one group: the sums of each cell, and the first runs of the file `rows`,

@@ -40,7 +40,8 @@ class Recomputation {
   const StudyPlan& plan_;
   PosixFile file_;
   ResultSlabs slabs_;
-  std::vector<RecordLayout> layouts_, full_layouts_;  ///< {cell}
+  /// {cell} layouts of usual runs, and of runs in full.
+  std::vector<RecordLayout> layouts_, full_layouts_;
 };
 
 }  // namespace montecarta::engine

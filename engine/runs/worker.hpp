@@ -93,7 +93,8 @@ class TaskList {
 /// Data that all workers of a session share.
 struct Session {
   const StudyPlan& plan;
-  std::span<const RecordLayout> layouts, full_layouts;  ///< {cell}
+  /// {cell} layouts of usual runs, and of runs in full.
+  std::span<const RecordLayout> layouts, full_layouts;
   ResultWriter& writer;
   TaskList& tasks;
   SpareThreads& spare_threads;

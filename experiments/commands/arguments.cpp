@@ -20,7 +20,7 @@
 namespace montecarta::experiments {
 namespace {
 
-/// The option in a line of the help, e.g. "-o, --output OUT.h5  result file".
+/// Parses an option from a line of the help, e.g. "-o, --output OUT.h5  result file".
 OptionSpec option_in(const std::string& line) {
   const std::size_t gap = std::min(line.find("  "), line.size());
   OptionSpec option;
@@ -34,14 +34,14 @@ OptionSpec option_in(const std::string& line) {
       option.repeatable = true;
     } else {
       option.value = word;
-      // NAME,... is one word with commas.
+      // A word such as "NAME,..." is one word with commas, not a list of words.
       option.is_list = word.ends_with("...") && word.find(",...") == std::string::npos;
     }
   }
   return option;
 }
 
-/// The operand in a word of the usage: "FILE.h5", "FILE.h5..." or "[NAME]".
+/// Parses an operand from a word of the usage: "FILE.h5", "FILE.h5..." or "[NAME]".
 OperandSpec operand_in(std::string word) {
   OperandSpec operand;
   if (word.starts_with('[')) {
@@ -56,7 +56,7 @@ OperandSpec operand_in(std::string word) {
   return operand;
 }
 
-/// The command in a usage, e.g. "replay FILE.h5 -o ONE.h5"; its options are read later.
+/// Parses a command from its usage, e.g. "replay FILE.h5 -o ONE.h5". Its options are read later.
 CommandSpec command_in(const std::string& usage) {
   const std::vector<std::string> words = split(usage, ' ');
   CommandSpec command;
@@ -74,7 +74,7 @@ bool is_in_usage(const OptionSpec& option, const CommandSpec& command) {
          (!option.letter.empty() && std::ranges::find(words, "-" + option.letter) != words.end());
 }
 
-/// Adds a line of the file to the details: as a line of its own, or to the paragraph before.
+/// Adds a line of the text to the details, as a line of its own or to the paragraph before it.
 void add_detail(const std::string& line, std::string& details) {
   const bool is_item = line.starts_with("  ") && !line.starts_with("    ");
   const bool begins = details.empty() || details.ends_with('\n');
@@ -287,7 +287,8 @@ std::optional<RunRange> range_of(const Arguments& arguments, const Settings& set
   return std::nullopt;
 }
 
-/// The file of a shipped study, by its name in `montecarta list studies`; nullopt if there is none.
+/// Returns the file of a shipped study by its name in `montecarta list studies`; nullopt if there
+/// is none.
 std::optional<std::filesystem::path> shipped_study(const std::string& name) {
   if (name.find('/') != std::string::npos) return std::nullopt;
   return shipped_file("studies", name + ".ini");

@@ -29,7 +29,7 @@ struct OptionSpec {
 
 /// A positional argument of a command.
 struct OperandSpec {
-  std::string name;  ///< e.g. "STUDY.ini"
+  std::string name;  ///< name in the usage, e.g. "STUDY.ini"
   std::size_t least = 1;
   std::size_t most = 1;
 };
@@ -57,7 +57,7 @@ class Arguments {
   bool has(const std::string& option) const { return values_.contains(option); }
   /// The value of an option; nullopt if it was not given.
   std::optional<std::string> text(const std::string& option) const;
-  /// All values of an option, in the order given.
+  /// All values of an option, in the order in which they were given.
   std::vector<std::string> texts(const std::string& option) const;
   /// The value of an option as a number within [least, most]; nullopt if it was not given. Throws
   /// StudyError if the value is not such a number.
@@ -84,12 +84,13 @@ std::string help_text(const CommandSpec& spec);
 ExternalPrograms programs_of(const Study& study, const Arguments& arguments);
 /// Reads the study that the first operand names, a file or a shipped study, and applies --set.
 Study study_of(const Arguments& arguments);
-/// The plan of `study`, restricted by --runs or --shard, with external programs if --allow-external
-/// was given.
+/// Makes the plan of `study`, restricted by --runs or --shard, with external programs if
+/// --allow-external was given.
 StudyPlan plan_of(const Study& study, const Arguments& arguments);
 /// Threads and backend as set by --threads, --backend and the environment.
 Parallel parallel_of(const Arguments& arguments);
-/// The provenance to store in a file that `command` makes: build, machine, command line, threads.
+/// The provenance that is stored in a file that `command` makes: build, machine, command line,
+/// threads.
 TextPairs provenance_of(const std::string& command, const Arguments& arguments);
 
 }  // namespace montecarta::experiments

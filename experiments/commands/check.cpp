@@ -90,9 +90,9 @@ struct Held {
   double bytes = 0.0;
 };
 
-/// Extrapolates the memory of a filter at the end of a drive from that at two times. It grows with
-/// the number of landmarks if every particle has a map, and with its square if there is one joint
-/// covariance. A filter that keeps its path also grows with the number of steps.
+/// Extrapolates the memory of a filter to the end of a drive from its memory at two times. It grows
+/// with the number of landmarks if every particle has a map, and with its square if there is one
+/// joint covariance. A filter that keeps its path also grows with the number of steps.
 double bytes_at_end(const Cell& cell, const Itinerary& itinerary, const Drive& drive,
                     const Held& half, const Held& end) {
   const auto landmarks_by = [&](std::size_t steps) {
@@ -104,7 +104,7 @@ double bytes_at_end(const Cell& cell, const Itinerary& itinerary, const Drive& d
   const double all = landmarks_by(itinerary.steps());
   const double by_steps = static_cast<double>(itinerary.steps() - end.steps) /
                           static_cast<double>(std::max<std::size_t>(end.steps - half.steps, 1));
-  double rest = by_steps;  // further growth in units of that between the two times
+  double rest = by_steps;  // growth until the end, in units of the growth between the two times
   if (now > before && cell.particles > 0) rest = (all - now) / (now - before);
   if (now > before && cell.particles == 0)
     rest = std::max(by_steps, (all * all - now * now) / (now * now - before * before));
@@ -169,10 +169,10 @@ std::string memory_text(double bytes) {
   return "about " + bytes_text(bytes);
 }
 
-/// [byte] Size of the result file.
+/// [byte] Estimated size of the result file.
 double size_of_file(const StudyPlan& plan) {
   if (!plan.columns.sums) return describe(plan, {}).bytes();
-  StudyPlan first_runs = plan;  // the only runs with rows
+  StudyPlan first_runs = plan;  // only these runs are stored as rows
   const std::uint64_t kept = std::max(kRunsBesideSums, plan.columns.full_runs);
   first_runs.last_run = std::min(plan.first_run + kept, plan.last_run);
   const double sums = bytes_of_sums(plan.runs_here(), plan.drives->itinerary().scans());

@@ -48,8 +48,8 @@ const char* name_of(GateAnswer answer) {
                                               : "undecided";
 }
 
-/// The reason why the gate is closed although the errors alone would open it; empty if it is not
-/// closed.
+/// Sentence that says that more runs failed, or that more samples are unusable, than are allowed;
+/// empty if neither is so.
 std::string too_many(const Verdict& verdict, const Allowance& allowed) {
   const auto words = [](const std::string& what, std::uint64_t most) {
     return " More " + what + " than are allowed (" + std::to_string(most) + ").";
@@ -72,8 +72,8 @@ Json json_of(const Member& member, bool is_shown) {
           {"shown", is_shown}};
 }
 
-/// All numbers on which the verdict rests. The scans are represented by the one with the least
-/// p-value.
+/// JSON with all numbers on which the verdict rests. The scans are represented by the one with the
+/// least p-value.
 Json json_of(const std::string& label, const Verdict& verdict, const Allowance& allowed,
              GateAnswer answer) {
   Json families = Json::array();

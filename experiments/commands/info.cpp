@@ -13,7 +13,7 @@
 namespace montecarta::experiments {
 namespace {
 
-/// Number of runs in the file that no cell is missing.
+/// Number of runs of the file that are missing in no cell.
 std::size_t runs_done(const ResultFile& file) {
   std::vector<bool> done(file.runs().size(), true);
   for (const StoredCell& cell : file.cells()) {

@@ -30,7 +30,7 @@ struct ListEntry {
   std::string short_name = {};  ///< name in the list; empty if it is `name`
 };
 
-/// Text of the default, and of the one for measured controls if it differs.
+/// Text of the default and, if it differs, of the default for measured controls.
 std::string fallback_text(const Parameter& option) {
   std::string text = option.fallback.value_or("none, it must be given");
   if (option.fallback_if_measured)
@@ -59,7 +59,7 @@ std::vector<ListEntry> filters() {
   return entries;
 }
 
-/// Text of the default, and of the defaults for kinds of scenario that have another one.
+/// Text of the default, and of the defaults for those kinds of scenario that have another one.
 std::string fallback_text(const Setting& setting) {
   const auto in_words = [](const std::string& value) {
     return value == kRequired       ? "none, it must be given"
@@ -107,7 +107,7 @@ std::vector<ListEntry> settings() {
   return entries;
 }
 
-/// Entries for the shipped files in a folder. entry_of(name, path) makes one.
+/// Makes an entry by entry_of(name, path) for every shipped file in a folder.
 template <class EntryOf>
 std::vector<ListEntry> shipped_entries(const std::string& folder, const std::string& ending,
                                        const EntryOf& entry_of) {
@@ -150,7 +150,7 @@ std::vector<ListEntry> metrics() {
   return entries;
 }
 
-/// A column of the table, or one that a filter declares itself.
+/// A column of column_table(), or one that a filter declares itself.
 struct ListedColumn {
   std::string name, group, axes, units, long_name;
 };
@@ -191,7 +191,7 @@ std::vector<ListEntry> columns() {
   return entries;
 }
 
-/// One kind of entries.
+/// A list of entries of one kind, for instance of all filters.
 struct Listed {
   std::string name;
   std::vector<ListEntry> (*entries)();

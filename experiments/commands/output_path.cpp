@@ -11,7 +11,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Why no result may replace `path`, e.g. "is a folder"; empty if it may be written.
+/// Returns the reason why no result may replace `path`, e.g. "is a folder"; empty if it may be
+/// written.
 std::string obstacle_at(const fs::path& path) {
   std::error_code ignored;
   const fs::file_status status = fs::status(path, ignored);

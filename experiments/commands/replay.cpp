@@ -20,8 +20,8 @@
 namespace montecarta::experiments {
 namespace {
 
-/// All columns that this study can record. Without identities there is no ground truth for
-/// associations.
+/// Returns the names of all columns that this study can record. Without identities there is no
+/// ground truth for associations.
 std::string all_columns(const Study& study) {
   std::vector<std::string> columns;
   for (const Setting& setting : study_settings()) {
@@ -34,7 +34,7 @@ std::string all_columns(const Study& study) {
   return joined(columns, ", ");
 }
 
-/// The study reduced to one run of one cell, with everything recorded.
+/// Returns the study reduced to one run of one cell, with everything recorded.
 Study recording_everything(Study study, std::size_t cell, std::uint64_t run) {
   study.cells = {study.cells[cell]};
   study.until.reset();  // a single run never stops early
@@ -48,8 +48,8 @@ Study recording_everything(Study study, std::size_t cell, std::uint64_t run) {
   return study;
 }
 
-/// The difference from the stored run, as a sentence; nullopt if there is none or the run is not
-/// stored.
+/// Describes the difference from the stored run in a sentence; nullopt if there is none or the run
+/// is not stored.
 std::optional<std::string> departure(const ResultFile& file, const Study& study, std::size_t cell,
                                      std::uint64_t run, ExternalPrograms programs) {
   if (cell >= file.cells().size() || file.cells()[cell].label != study.cells[cell].label) {

@@ -26,8 +26,8 @@ namespace {
 /// the command that prints the verdict is printed instead.
 constexpr std::uintmax_t kLargestVerdict = 2'000'000'000;
 
-/// [s] Shortest time budget. With none, no run would ever be done, and a script that resumes would
-/// never end.
+/// [s] Shortest time budget. With a budget of zero no run would ever be done, and a script that
+/// resumes would never end.
 constexpr double kLeastBudget = 0.001;
 
 ProgressStyle progress_of(const Arguments& arguments) {

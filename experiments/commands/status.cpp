@@ -17,7 +17,7 @@ namespace {
 struct StudyStatus {
   std::string sha256;
   std::vector<std::string> labels;
-  std::vector<std::vector<RunStatus>> runs;  ///< {cell}{run of the study}
+  std::vector<std::vector<RunStatus>> runs;  ///< {cell}{run of the study} status of each run
 };
 
 /// Adds the statuses of all groups. It does not matter here which runs of a group failed.
@@ -64,7 +64,7 @@ void print(const StudyStatus& study) {
   std::cout << aligned(without_idle_not_needed(std::move(rows)), 0);
 }
 
-/// The depth of the check of a file.
+/// How thoroughly a file is checked.
 enum class Depth { statuses, every_byte };
 
 /// A sentence such as "run 7 is damaged" about the first stored run that does not match its

@@ -18,9 +18,9 @@ ResultFile open_stored(const std::string& name);
 /// prints how to draw the report.
 void print_where_to_look(const std::string& name, const std::string& page);
 
-/// Numbers of runs of a cell in each state.
+/// Counts the runs of a cell in each state.
 RunCounts count_status(const std::vector<RunStatus>& status);
-/// The runs of a cell in rows or in sums.
+/// Counts the runs of a cell in each state, whether the file has them as rows or in sums.
 RunCounts count_status(const ResultFile& file, const StoredCell& cell);
 
 /// Removes the last column of a table, which counts runs that are not needed, if no cell has any.

@@ -16,11 +16,11 @@ namespace montecarta::experiments {
 /// the groups become OUT.h5. Ends early, and is resumed, like run_study().
 RunOutcome run_summed_study(const StudyPlan& plan, const RunOptions& options);
 
-/// The folder of unfinished work.
+/// The folder OUT.h5.groups of the unfinished work on the result `output`.
 std::filesystem::path groups_of(std::filesystem::path output);
 
-/// {cell} The sums over the group of runs that begins at `first_run`, computed again. Its rows are
-/// in `folder` meanwhile, and removed.
+/// {cell} Computes again, and returns, the sums over the group of runs that begins at `first_run`.
+/// `folder` is created for the rows of these runs, and removed afterwards.
 std::vector<NewGroup> computed_group(const StudyPlan& plan, std::uint64_t first_run,
                                      const std::filesystem::path& folder, const Parallel& parallel);
 

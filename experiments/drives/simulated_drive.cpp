@@ -33,8 +33,8 @@ SimulatedSensor::SimulatedSensor(const Scenario& scenario)
       view_(scenario.max_range, scenario.field_of_view, scenario.sensor.mounting,
             scenario.min_range) {}
 
-/// The detection of exact values, with noise if `noise` is given, limited to values that the sensor
-/// can measure.
+/// Makes a detection of exact values, with noise if `noise` is given. It is limited to values that
+/// the sensor can measure.
 Detection SimulatedSensor::noisy(const Eigen::Vector2d& exact, std::int32_t identity,
                                  RngStream* noise) const {
   Detection detection{.values = {}, .identity = identity};
@@ -96,8 +96,8 @@ namespace {
 /// [m] Length of one step.
 double step_length(const Scenario& scenario) { return scenario.speed / scenario.control_rate; }
 
-/// Distance [m] within which a vehicle must reach a way-point; beyond it the way-point counts as
-/// missed.
+/// Largest distance [m] that may be driven until a way-point is reached. After it, the way-point
+/// counts as missed.
 double time_limit(const Pose& pose, const Eigen::Vector2d& waypoint, const Scenario& scenario) {
   const double distance = length(waypoint.x() - pose.x, waypoint.y() - pose.y);
   return 3.0 * distance + 10.0 * way_to_turn(scenario.vehicle, scenario.speed);
@@ -224,7 +224,8 @@ void SimulatedDrive::move_measured(std::uint64_t run, Drive& drive) const {
   }
 }
 
-/// The landmarks in view are the same in all runs, because the true path is.
+/// Generates a run in which the true path, and so the landmarks in view, are the same as in all
+/// runs.
 void SimulatedDrive::generate_measured(std::uint64_t run, Drive& drive) const {
   move_measured(run, drive);
   for (std::size_t s = 0; s < itinerary_.scans(); ++s) {

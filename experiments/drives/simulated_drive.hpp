@@ -33,7 +33,7 @@ enum class Pilot {
   open_loop     ///< steering by the controls of the noise-free drive
 };
 
-/// Positions of the landmarks.
+/// The positions of the landmarks in each run.
 enum class MapPlacement {
   fixed,  ///< positions of the world in every run
   random  ///< positions displaced in every run, uniformly within Scenario::map_shift
@@ -46,14 +46,15 @@ struct Scenario {
   MapPlacement map = MapPlacement::fixed;
   double map_shift = 10.0;           ///< [m] largest displacement of a landmark of a random map
   std::uint32_t loops = 1;           ///< number of times round the way-points
-  std::uint32_t steps_per_scan = 8;  ///< control_rate / scan_rate
+  std::uint32_t steps_per_scan = 8;  ///< number of control steps per scan
   double control_rate = 40.0;        ///< [Hz] control steps per second
   Vehicle vehicle = {};
-  double speed = 3.0;                                       ///< [m/s] speed of the vehicle
-  ControlNoise control{.sigma = {0.3, 3.0 * kPi / 180.0}};  ///< noise, e.g. [m/s], [rad]
-  double sigma_range = 0.1;                                 ///< [m] standard deviation
-  double sigma_bearing = 1.0 * kPi / 180.0;                 ///< [rad] standard deviation
-  double max_range = 30.0;                                  ///< [m] largest measured range
+  double speed = 3.0;  ///< [m/s] speed of the vehicle
+  /// Noise of the controls, e.g. [m/s], [rad].
+  ControlNoise control{.sigma = {0.3, 3.0 * kPi / 180.0}};
+  double sigma_range = 0.1;                  ///< [m] standard deviation of a range
+  double sigma_bearing = 1.0 * kPi / 180.0;  ///< [rad] standard deviation of a bearing
+  double max_range = 30.0;                   ///< [m] largest measured range
   double field_of_view = kPi;     ///< [rad] full angle, centred on the axis of the sensor
   double waypoint_radius = 1.0;   ///< [m] distance within which a way-point is reached
   double clutter_rate = 0.0;      ///< mean number of false alarms per scan
@@ -69,7 +70,7 @@ struct Scenario {
 /// A landmark in view and its detection by a sensor without noise.
 struct VisibleLandmark {
   std::int32_t identity = 0;
-  Eigen::Vector2d detection;  ///< components of the sensor
+  Eigen::Vector2d detection;  ///< values of the components that the sensor measures
 };
 
 /// Lower bound of measured ranges [m], for noise of any size (EQUATIONS 2).
@@ -102,7 +103,7 @@ class SimulatedSensor {
   Detection noisy(const Eigen::Vector2d& exact, std::int32_t identity, RngStream* noise) const;
 
   Scenario scenario_;
-  Eigen::Vector2d sigma_;  ///< standard deviations of the components
+  Eigen::Vector2d sigma_;  ///< standard deviations of the components of a detection
   FieldOfView view_;
 };
 
@@ -116,7 +117,7 @@ class WaypointPilot {
   /// Advances to the next way-point if the current one is reached at `pose`. Advances by at most
   /// one way-point per step.
   void look_ahead(const Pose& pose);
-  /// The control for the next step from `pose`.
+  /// Returns the control for the next step from `pose`.
   const Control& steer(const Pose& pose);
 
   std::uint32_t loops_done() const { return loops_done_; }
@@ -186,9 +187,10 @@ class SimulatedDrive final : public DriveSource {
   SimulatedSensor sensor_;
   std::optional<RandomMap> random_map_;  ///< nullopt if every run has the landmarks of the world
   Itinerary itinerary_;
-  std::vector<Control> nominal_;              ///< controls of the noise-free drive
-  std::vector<Pose> path_;                    ///< its poses after each step
-  std::vector<VisibleLandmark> visible_;      ///< landmarks in view in its scans
+  std::vector<Control> nominal_;  ///< controls of the noise-free drive
+  std::vector<Pose> path_;        ///< poses of the noise-free drive after each step
+  /// Landmarks in view at all scans of the noise-free drive.
+  std::vector<VisibleLandmark> visible_;
   std::vector<std::uint32_t> visible_begin_;  ///< scans + 1 offsets into visible_
 };
 

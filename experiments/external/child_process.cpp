@@ -209,7 +209,7 @@ fs::path find_program(const std::string& program) {
 }
 
 ChildProcess::ChildProcess(std::span<const std::string> words) {
-  OrphanGuard::instance();  // before the pipes exist, because it would inherit them
+  OrphanGuard::instance();  // started before the pipes exist, because it would inherit them
   // Writing to a program that has ended is then an error of write() instead of the end of this one.
   [[maybe_unused]] static const auto before = std::signal(SIGPIPE, SIG_IGN);
   Pipe input = make_pipe(), output = make_pipe(), error = make_pipe();

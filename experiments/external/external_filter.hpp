@@ -59,7 +59,7 @@ class ExternalFilter final : public SlamFilter {
     std::unique_ptr<ChildProcess> process;
     std::uint64_t next_id = 0;         ///< number of the next message in this run
     std::vector<ControlRow> controls;  ///< controls that are not yet sent to the program
-    PoseMoments pose;                  ///< last answer
+    PoseMoments pose;                  ///< estimate of the pose in the last answer
   };
 
   void begin(const StepContext& context);
@@ -82,7 +82,7 @@ class ExternalFilter final : public SlamFilter {
 /// study file cannot.
 enum class ExternalPrograms { refused, allowed };
 
-/// Name of the option that allows it, without dashes.
+/// Name of the option that gives this permission, without dashes.
 inline constexpr const char* kAllowExternal = "allow-external";
 
 /// Returns whether cells of this kind start a program.

@@ -145,7 +145,7 @@ LongestRun longest_of(const JudgedFiles& files, double tolerance) {
                    "one row for each time");
 }
 
-/// Innovations with an angle beyond pi, which a difference of two angles is not.
+/// Counts innovations with an angle beyond pi, which a wrapped difference of angles never has.
 class UnwrappedInnovations {
  public:
   void add(const StateRows& rows) {

@@ -12,7 +12,7 @@ namespace montecarta::experiments {
 /// The files of one estimator.
 struct EstimatorFiles {
   std::string cell;                           ///< label of the cell
-  std::vector<std::filesystem::path> of_run;  ///< {JudgedFiles::runs} files
+  std::vector<std::filesystem::path> of_run;  ///< {run} file of each run of JudgedFiles::runs
 };
 
 /// Estimates and truths, matched by run.

@@ -38,8 +38,9 @@ struct StateShape {
 /// Indices of the fields in a row of a file of estimates.
 struct EstimateFields {
   StateShape shape;
-  std::vector<std::size_t> state;       ///< {width} fields of the state
-  std::vector<std::size_t> covariance;  ///< {d, d} fields; from a triangle, elements occur twice
+  std::vector<std::size_t> state;  ///< {width} fields of the state
+  /// {d, d} fields; if the file has only a triangle, most occur twice.
+  std::vector<std::size_t> covariance;
   std::optional<std::size_t> nis, nis_dof;  ///< both are present or neither
 };
 

@@ -14,13 +14,13 @@ namespace montecarta::experiments {
 
 /// A measured or commanded control, which holds from its time until the next one.
 struct Odometry {
-  double time = 0.0;  ///< [s]
+  double time = 0.0;  ///< [s] time from which the control holds
   Control control;
 };
 
 /// All detections at one instant.
 struct LoggedScan {
-  double time = 0.0;                  ///< [s]
+  double time = 0.0;                  ///< [s] time of all detections of the scan
   std::vector<Detection> detections;  ///< detections in the sensor's order; may be empty
 };
 

@@ -41,7 +41,7 @@ const std::array<std::string, 6> kReferenceHeaders = {
     "cov_x_heading_m_rad,cov_y_heading_m_rad,var_heading_rad2"};
 constexpr std::size_t kWithSigmas = 2, kWithCovariance = 4;
 
-/// A header of the time, then of these controls or components of a detection.
+/// Makes a header of the time and then of these controls or these components of a detection.
 std::string header_of(std::span<const Quantity> quantities) {
   std::string header = "time_s";
   for (const Quantity quantity : quantities)

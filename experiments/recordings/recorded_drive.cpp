@@ -19,10 +19,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The numbers of a log, one behind the other. Lists and names are preceded by their length.
+/// The bytes of the numbers of a log, one behind the other. Lists and names are preceded by their
+/// length.
 class Bytes {
  public:
-  /// Bytes of a log with this many controls, and this many components of a detection.
+  /// Begins the bytes of a log that has this many controls, and this many components of a
+  /// detection.
   Bytes(std::size_t controls, std::size_t components)
       : controls_(controls), components_(components) {}
   template <class Number>
@@ -47,7 +49,7 @@ class Bytes {
   void add(const ReferencePath& path) {
     add_name(path.name);
     add(path.time), add(path.position), add(path.heading);
-    // Fingerprints of drives without covariances do not change.
+    // Without covariances nothing is added, so that the fingerprints of such drives stay the same.
     if (!path.covariance.empty()) add(path.covariance);
   }
   void add(const Eigen::Matrix3d& matrix) {
@@ -112,7 +114,8 @@ std::string fingerprint_of(const DriveLog& log) {
   Bytes bytes(log.controls.size(), log.components.size());
   bytes.add(log.start_time);
   bytes.add(log.start);
-  // The fingerprints of drives of cars, and of sensors of range and bearing, do not change.
+  // For cars, and for sensors of range and bearing, no names are added, so that the fingerprints of
+  // such drives stay the same.
   if (log.controls.data() != controls_of(Car()).data()) {
     for (const Quantity control : log.controls) bytes.add_name(component_of(control).name);
   }
@@ -152,7 +155,8 @@ void require_alike(const Itinerary& first, const Itinerary& other, std::size_t n
                    "one map): give all the same landmarks.csv, or none");
 }
 
-/// A control holds from its time to that of the next one; the last record ends the last step.
+/// Makes the rows of the odometry. A control holds from its time to that of the next one; the last
+/// record ends the last step.
 std::vector<Odometry> odometry_rows(const Itinerary& itinerary, const Drive& drive) {
   std::vector<Odometry> odometry;
   double begin = 0.0;

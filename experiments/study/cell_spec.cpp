@@ -16,7 +16,7 @@ namespace {
 /// The checked values of each option in a line.
 using Lists = std::map<std::string, std::vector<std::string>>;
 
-/// The options of a filter, then those of every filter.
+/// Returns the own options of a filter, followed by those that every filter has.
 std::vector<Parameter> all_options(const FilterKind& filter) {
   std::vector<Parameter> all = filter.options;
   all.insert(all.end(), mismatch_options().begin(), mismatch_options().end());

@@ -14,19 +14,19 @@ namespace montecarta::experiments {
 
 /// One filter in one setting, as a study file defines it.
 struct CellSpec {
-  std::string label;  ///< unique in the study; letters, digits and _
+  std::string label;  ///< label, unique in the study, of letters, digits and _
   const FilterKind* filter = nullptr;
   /// All options of the filter, in its order and in canonical spelling, then the factors of
   /// mismatch_options() that are not 1.
   std::vector<std::pair<std::string, std::string>> options;
   std::string distinction;  ///< difference from other cells of its filter: "100 particles"
-  std::string place;        ///< "file:line"
+  std::string place;        ///< place in the study file: "file:line"
 };
 
 /// Options that every filter has besides its own: factors on the standard deviations that it
 /// assumes, for studies of filters with wrong noise parameters.
 std::span<const Parameter> mismatch_options();
-/// The factor of that name; 1 if it is not in the list.
+/// The factor `name` of the cell; 1 if it is not among its options.
 double mismatch_of(const CellSpec& cell, std::string_view name);
 
 /// The cells of all `cell = FILTER key=value,... label=NAME` lines: one for every combination of

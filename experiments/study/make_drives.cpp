@@ -75,8 +75,8 @@ void refuse_use_of_identities(const Settings& s) {
   }
 }
 
-/// Refuses scans before the start: all of them would be taken there, at one time and with the same
-/// random numbers.
+/// Refuses a scan delay that moves scans before the start: all of these scans would be taken at the
+/// start, at one time and with the same random numbers.
 void refuse_early_scans(const Settings& s, const DriveLog& log) {
   const double most = log.scans.front().time - log.start_time;
   if (s.number("scenario", "scan_delay") <= most) return;

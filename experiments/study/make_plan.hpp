@@ -28,7 +28,8 @@ RunRange parse_shard(const std::string& text, std::uint64_t runs, std::uint64_t 
 /// remedy"; empty if it can.
 std::string objection_to_joint(const Study& study);
 
-/// The reason why the study cannot store the column observability, in the same form.
+/// The reason why the study cannot store the column observability, in the form of
+/// objection_to_joint(); empty if it can.
 std::string objection_to_observability(const Study& study);
 
 /// Makes the plan of a study: its drives and its filters, for all runs or those in `range`. Filters

@@ -15,7 +15,7 @@ namespace montecarta::experiments {
 
 inline constexpr const char* kFromScenario = "scenario";
 inline constexpr const char* kRequired = "(required)";
-/// The values of a setting with which another one applies; empty: all values.
+/// The condition that another setting has one of `values`, or any value if `values` is empty.
 struct Condition {
   std::string section, key;
   std::vector<std::string> values;
@@ -25,8 +25,8 @@ struct Condition {
 /// text, and `montecarta list settings`.
 struct Setting : Parameter {
   std::string section = {};
-  /// All must hold for the setting to apply: on scenario.kind, then on the vehicle, the sensor or
-  /// the noise of its section. These settings come earlier in the table.
+  /// Conditions that must all hold for the setting to apply: on scenario.kind, then on the vehicle,
+  /// the sensor or the noise of its section. The settings that they name come earlier in the table.
   std::vector<Condition> conditions = {};
   /// Pairs (kind of scenario, default) for kinds with a default of their own. kFromScenario stands
   /// for the scenario's value of that key, kRequired for no default.

@@ -225,7 +225,7 @@ void Settings::fill_in(const std::string& name) {
 /// use the value.
 std::string Settings::copied_from_scenario(const Setting& setting) const {
   if (!has("scenario", setting.key))
-    return setting.fallback.value();  // the scenario has another vehicle or sensor
+    return setting.fallback.value();  // the scenario has another vehicle or sensor than the belief
   const auto& [value, given_at] = at("scenario", setting.key);
   try {
     return checked_value(setting, value, given_at);

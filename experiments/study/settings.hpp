@@ -19,7 +19,7 @@ struct IniEntry {
   std::string section;
   std::string key;
   std::string value;
-  std::string place;  ///< "file:line"
+  std::string place;  ///< place in the text: "file:line"
 };
 
 /// A `[section]` line, with its place.
@@ -38,8 +38,8 @@ struct IniText {
 /// and a line number. Throws StudyError for stray text and for entries before the first section.
 IniText read_ini(const std::string& text, const std::string& name);
 
-/// `text` in the canonical spelling of the resolved study. Throws StudyError that begins with
-/// `place` if the text is not a valid value of the option.
+/// Returns `text` in the canonical spelling of the resolved study. Throws StudyError that begins
+/// with `place` if the text is not a valid value of the option.
 std::string checked_value(const Parameter& option, std::string_view text, const std::string& place);
 
 /// The values that an option allows, e.g. "a number from 0 to 1000 m".
@@ -70,7 +70,7 @@ class Settings {
   /// Returns whether the setting applies to the kind of scenario, vehicle and sensor, and so has a
   /// value.
   bool has(std::string_view section, std::string_view key) const;
-  /// (key, value) of the settings of a section that have a value, in the order of the table.
+  /// Pairs (key, value) of the settings of a section that have a value, in the order of the table.
   std::vector<std::pair<std::string, std::string>> section(std::string_view name) const;
 
  private:

@@ -17,7 +17,7 @@ struct StoppingRule {
 
   /// Name of a score of runs; nullopt: the verdict decides.
   std::optional<std::string> metric = {};
-  double half_width = 0.0;  ///< of the kLevel interval of the mean over runs, in the score's unit
+  double half_width = 0.0;  ///< half width of the kLevel interval of the mean, in the score's unit
   /// Number of runs that the verdict "consistent" needs, because an early stop would miss rare
   /// divergence.
   std::uint64_t least_runs = kUsualLeastRuns;

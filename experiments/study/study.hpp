@@ -24,7 +24,7 @@ struct Study {
   World world;  ///< world of a simulation
   /// Recorded drives: one for all runs, or one for each run; empty in a simulation.
   std::vector<std::shared_ptr<const DriveLog>> logs;
-  std::optional<StoppingRule> until;  ///< when a cell stops early
+  std::optional<StoppingRule> until;  ///< rule by which a cell stops early; nullopt: never
 };
 
 /// Number of landmarks that detections can name; 0 if they have no identities.

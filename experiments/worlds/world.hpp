@@ -12,8 +12,8 @@ namespace montecarta::experiments {
 
 /// Landmarks to map and way-points to drive along, in the map frame.
 struct World {
-  std::string name;                        ///< name in studies: that of the file without its ending
-  std::vector<Eigen::Vector2d> waypoints;  ///< [m], in the order in which they are driven
+  std::string name;  ///< name in studies: the name of the file without its ending
+  std::vector<Eigen::Vector2d> waypoints;  ///< [m] way-points in the order in which they are driven
   std::vector<Eigen::Vector2d> landmarks;  ///< [m], ordered by identity
   /// "file:line" of each way-point, for errors; empty if the world was not read from lines.
   std::vector<std::string> waypoint_places = {};

@@ -21,7 +21,8 @@ class MapAssociation {
   bool known() const { return settings_.kind == Association::known; }
   const AssociationSettings& settings() const { return settings_; }
 
-  /// Both pair the detections of a scan, by identity or by a search of the map for each detection.
+  /// Both functions pair the detections of a scan, by identity or by a search of the map for each
+  /// detection.
   void pair_by_identity(Scan scan);
   void pair_nearest(Scan scan, std::span<const NearestSearch> searches);
   std::span<const Pairing> pairings() const { return pairings_; }
@@ -45,7 +46,8 @@ class MapAssociation {
 
   AssociationSettings settings_;
   double log_new_density_;
-  std::vector<std::uint32_t> slot_of_identity_;  ///< {identity} if identities are known
+  /// {identity} slot of the landmark, if identities are known.
+  std::vector<std::uint32_t> slot_of_identity_;
   std::vector<std::int32_t> made_of_;  ///< {slot} identity at initialisation, to count errors
   std::vector<Pairing> pairings_;      ///< result of the last scan
   AssociationCounts counts_;
@@ -57,7 +59,7 @@ class MapAssociation {
 template <class RowOfSlot>
 JointEstimate joint_report(const JointEstimate& held, const MapAssociation& association,
                            std::size_t landmarks, const RowOfSlot& row_of_slot) {
-  std::vector<Eigen::Index> rows{0, 1, 2};  // in `held`
+  std::vector<Eigen::Index> rows{0, 1, 2};  // rows in `held` of the reported components
   for (std::size_t k = 0; k < landmarks; ++k) {
     const Eigen::Index row = row_of_slot(association.slot_of(k));
     rows.push_back(row);

@@ -48,7 +48,8 @@ void exclude_rivals(std::span<Pairing> pairings) {
 
 double log_new_density(const AssociationSettings& settings, const Belief& belief) {
   const auto n = static_cast<double>(components_of(belief.sensor).size());
-  const Eigen::Vector2d sigma = deviations_of(belief.sensor, belief);  // 1 beyond n components
+  // The deviation of a component that the sensor does not have is 1.
+  const Eigen::Vector2d sigma = deviations_of(belief.sensor, belief);
   const double log_sqrt_det_s = std::log(std::pow(2.0, 0.5 * n) * sigma(0) * sigma(1));
   return -0.5 * settings.gate - 0.5 * n * std::log(kTwoPi) - log_sqrt_det_s +
          settings.log_new_density_offset;

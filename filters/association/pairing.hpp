@@ -16,23 +16,25 @@ namespace montecarta::filters {
 /// The result of associating a detection.
 enum class PairingKind : std::uint8_t {
   ignored,  ///< neither near enough to a landmark nor far enough to be new, or lost to a rival
-  matched,  ///< it is a detection of `landmark`
-  fresh,    ///< it is the first of a new landmark
+  matched,  ///< the detection belongs to the landmark Pairing::landmark
+  fresh,    ///< the detection is the first of a new landmark
 };
 
 /// A detection and the landmark that one map associates with it.
 struct Pairing {
   PairingKind kind = PairingKind::ignored;
-  std::uint32_t landmark = 0;  ///< only if matched
-  double cost = 0.0;           ///< only if matched: ND = D^2 + log det S
+  std::uint32_t landmark = 0;  ///< index of the landmark if the detection is matched
+  double cost = 0.0;           ///< cost if the detection is matched: ND = D^2 + log det S
 };
 
 /// The search for the landmark that explains one detection best (EQUATIONS 17): offer() every
 /// landmark of the map, always in the same order, then decide_pairing().
 struct NearestSearch {
-  double least_distance = std::numeric_limits<double>::infinity();  ///< D^2 over all offered
-  double least_cost = std::numeric_limits<double>::infinity();  ///< ND over those inside the gate
-  std::uint32_t landmark = 0;                                   ///< the one of least cost
+  /// Least D^2 of all landmarks that were offered.
+  double least_distance = std::numeric_limits<double>::infinity();
+  /// Least ND of the landmarks inside the gate.
+  double least_cost = std::numeric_limits<double>::infinity();
+  std::uint32_t landmark = 0;  ///< landmark of least cost
 
   /// `distance` is D^2 = v' S^-1 v, `cost` is ND = D^2 + log det S. Of equal costs the first wins.
   void offer(std::uint32_t candidate, double distance, double cost, double gate) {
@@ -104,7 +106,7 @@ class InitialisationIdentities {
     room_ = wider;
   }
 
-  std::size_t room_ = 0;  ///< landmarks per particle that fit
+  std::size_t room_ = 0;  ///< number of landmarks per particle that fit
   std::vector<std::int32_t> identities_, spare_;
   std::vector<std::uint32_t> counts_, spare_counts_;  ///< {particle} number of landmarks
 };

@@ -20,13 +20,13 @@ class WaitingLandmarks {
   enum class Stage : std::uint8_t {
     unseen,
     seen,       ///< a first detection is kept
-    crossing,   ///< a second one would have crossed it well: the next one is kept
-    ambiguous,  ///< two are kept; of ranges, they leave two places
+    crossing,   ///< a second detection crossed the first one well: the next one is kept
+    ambiguous,  ///< two detections are kept; two ranges leave two places
   };
   struct Waiting {
     std::int32_t identity = 0;
     Stage stage = Stage::unseen;
-    double side = 1.0;  ///< 1 or -1: which of the two places
+    double side = 1.0;  ///< 1 or -1: side of the place that was chosen
     Kept kept = {};
   };
 
@@ -92,7 +92,7 @@ class WaitingLandmarks {
 
  private:
   bool of_bearings_;
-  std::vector<Waiting> waiting_;  ///< unordered
+  std::vector<Waiting> waiting_;  ///< waiting landmarks, in no order
 };
 
 }  // namespace montecarta::filters

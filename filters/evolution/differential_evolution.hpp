@@ -40,7 +40,8 @@ Real take_digit(Real& uniform, std::size_t count) {
 /// `target`; `size` >= 3. If `size` is 3 there is no third member, and r0 must not be used.
 template <class Real>
 Members<Real> draw_members(std::size_t size, std::size_t target, Real& first, Real& second) {
-  const auto leave_out = [](const Real& member, const Real& taken) {  // call in order of `taken`
+  // Must be called in increasing order of `taken`.
+  const auto leave_out = [](const Real& member, const Real& taken) {
     return select(member >= taken, Real(member + Real(1.0)), member);
   };
   const Real t(static_cast<double>(target));
@@ -56,9 +57,11 @@ Members<Real> draw_members(std::size_t size, std::size_t target, Real& first, Re
 /// The random numbers of one trial.
 template <class Real, std::size_t D>
 struct TrialDraws {
-  static constexpr std::uint32_t kBlocks = (2 + D + 1) / 2;  ///< blocks of the stream that are used
-  Members<Real> members;                                     ///< r1, r2, r0
-  std::array<Real, D> crosses;  ///< in (0, 1); -1 for the component that always crosses
+  /// Number of blocks of the stream that are used.
+  static constexpr std::uint32_t kBlocks = (2 + D + 1) / 2;
+  Members<Real> members;  ///< the members r1, r2, r0
+  /// Uniform numbers in (0, 1); -1 for the component that always crosses.
+  std::array<Real, D> crosses;
 
   TrialDraws(const EvolutionDraws& draws, std::uint32_t block, std::size_t size,
              std::size_t target) {
@@ -83,7 +86,7 @@ struct TrialDraws {
 template <class Real, std::size_t D>
 struct SearchBox {
   std::array<Real, D> centre;
-  std::array<Real, D> half;  ///< >= 0
+  std::array<Real, D> half;  ///< half the width of the region, >= 0
   std::array<bool, D> is_angle{};
 
   /// a - b in component j, wrapped if it is an angle.
@@ -106,9 +109,9 @@ struct SearchBox {
 enum class EvolutionBase { best, random, target };
 
 struct EvolutionSettings {
-  double scale = 0.5;                          ///< F
-  double crossover = 0.8;                      ///< Cr in [0, 1]
-  std::size_t generations = 10;                ///< upper limit
+  double scale = 0.5;                          ///< F: factor of the difference of two members
+  double crossover = 0.8;                      ///< Cr: probability of a crossover, in [0, 1]
+  std::size_t generations = 10;                ///< largest number of generations
   EvolutionBase base = EvolutionBase::random;  ///< base of the trial vectors
   double tolerance = 1e-6;                     ///< stop if best and worst fitness differ by less
   double good_enough = std::numeric_limits<double>::infinity();  ///< stop at this fitness
@@ -118,7 +121,8 @@ struct EvolutionSettings {
 template <class Real, std::size_t D>
 struct EvolutionScratch {
   std::vector<std::array<Real, D>> trials;
-  std::vector<Real> fitness, trial_fitness;  ///< {member}
+  /// {member} fitness of the members and of their trials.
+  std::vector<Real> fitness, trial_fitness;
 
   /// Sets the size. The fitness of all members is 0 until they are evaluated.
   void start(std::size_t size) {
@@ -145,7 +149,7 @@ namespace evolution {
 template <class Real, std::size_t D>
 using Population = std::span<std::array<Real, D>>;
 
-/// The best member and the worst fitness.
+/// Returns the best member and the worst fitness.
 template <class Real, std::size_t D>
 struct Ranking {
   Evolved<Real, D> leader;
@@ -161,7 +165,8 @@ struct Ranking {
       worst = select(fitness[i] < worst, fitness[i], worst);
     }
   }
-  /// Mask of the lanes that go on. A lane that has stopped stays so, since it accepts no trial.
+  /// Returns the mask of the lanes that go on. A lane that has stopped stays so, since it accepts
+  /// no trial.
   auto goes_on(const EvolutionSettings& settings) const {
     return !(leader.fitness - worst < Real(settings.tolerance)) &&
            leader.fitness < Real(settings.good_enough);

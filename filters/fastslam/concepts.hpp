@@ -35,16 +35,17 @@ template <class MapTransform, class Real>
 using LandmarkStateOf = decltype(std::declval<const MapTransform&>().initialise(
     BasicPose<Real>(), Measurement<Real>(), SensorNoise()));
 
-/// Keeps landmarks, like those two: each as a LandmarkGaussian or in a form that gaussian_of()
-/// converts to one for poses, weights and association. The form is a struct of Reals, and its
-/// default `{}`, a landmark that was never observed, must give a finite Gaussian.
+/// Keeps landmarks, like `Linearised` and `SigmaPoints`: each as a LandmarkGaussian or in a form
+/// that gaussian_of() converts to one for poses, weights and association. The form is a struct of
+/// Reals, and its default `{}`, a landmark that was never observed, must give a finite Gaussian.
 template <class T, class Real>
 concept KeepsLandmarks = requires(const T t, const BasicPose<Real>& pose,
                                   LandmarkStateOf<T, Real>& landmark, const Measurement<Real>& seen,
                                   const SensorNoise& R, Evidence<Real>& evidence) {
   // Initialises a landmark from a known pose.
   t.initialise(pose, seen, R);
-  // Updates it with one detection from a known pose and returns the innovation before the update.
+  // Updates a landmark with one detection from a known pose and returns the innovation before the
+  // update.
   { t.update(landmark, pose, seen, R, AllLanes(), evidence) } -> Is<Innovation<Real>>;
   { gaussian_of(landmark) } -> std::convertible_to<LandmarkGaussian<Real>>;
 };
@@ -54,7 +55,7 @@ template <class Real, class Landmark, class Mask>
 struct Match {
   Landmark landmark;  ///< a reference to the map, or a copy if particles matched different ones
   Measurement<Real> seen;
-  Mask mask;  ///< the particles that matched it
+  Mask mask;  ///< mask of the particles that matched the landmark
 };
 
 /// A landmark that particles of one block initialise.
@@ -62,7 +63,7 @@ template <class Real>
 struct FreshLandmark {
   Detection detection;
   std::size_t block;
-  std::uint32_t slot;               ///< slot that was added to their maps
+  std::uint32_t slot;               ///< slot that was added to the maps of the particles
   std::optional<std::size_t> lane;  ///< lane of the particle; nullopt means the whole block
 
   template <class Block>
@@ -82,21 +83,23 @@ concept Associator = requires(A a, const A decided, const StepContext& context, 
   // Associates a scan for all particles, by their `predicted` poses {block}.
   a.associate(context, scan, maps, predicted);
   { decided.matched_nothing() } -> Is<bool>;
-  // Number of detections that may be matched; weight of the particles that matched detection k.
+  // The number of detections that may be matched, and the weight of the particles that matched
+  // detection k.
   { decided.matches() } -> Is<std::size_t>;
   { decided.matched_weight(k, weights) } -> Is<double>;
 
-  // For each block: first fetch(), then a Match for each k, and store() if its landmark changed.
+  // For each block, fetch() is called first, then match() for each k, and store() if a landmark
+  // changed.
   decided.fetch(block);
   decided.store(block, k, decided.match(block, k));
-  // log p0 for every detection that a particle has not matched (EQUATIONS 17).
+  // Returns log p0 for every detection that a particle has not matched (EQUATIONS 17).
   { decided.unmatched_log_weight(block) } -> Is<Real>;
 
   // Adds slots to the maps for the caller to fill. If there is initialise(context, maps, poses), it
   // is called instead, and it fills the slots itself.
   { a.new_landmarks(context, maps) } -> std::convertible_to<std::span<const FreshLandmark<Real>>>;
   a.resample(context, /*parents*/ std::span<const std::uint32_t>());
-  // The following are for reports.
+  // The following functions are called for reports.
   { decided.counts(weights) } -> Is<AssociationCounts>;
   { decided.map_size(maps, weights) } -> Is<double>;
   { decided.landmark(context, k, maps, weights) } -> Is<std::optional<LandmarkEstimate>>;
@@ -112,7 +115,7 @@ concept PoseProposal = requires(P p, const P now, const StepContext& context, st
                                 typename P::Refined& refined, const FreshLandmark<Real>& fresh) {
   // Moves by a control step of `duration`.
   p.predict(context, Control(), /*duration*/ 0.1, poses);
-  // The estimate of a particle of its pose before the scan.
+  // Returns the estimates of the particles of their poses before the scan.
   { now.predicted(block, poses[block]) } -> Is<PoseGaussian<Real>>;
 
   // For each block: refines the pose by the scan, draws a pose from the result, and updates the

@@ -14,7 +14,7 @@ namespace montecarta::filters {
 enum class EvolutionMode {
   unbiased,    ///< each particle searches for its best pose; draws are weighted by (6.3)
   as_printed,  ///< the cloud climbs the likelihood and is then refined by the same scan again
-  prior,       ///< the same, but the fitness includes the motion and the map's covariance
+  prior,       ///< like as_printed, but the fitness includes the motion and the map's covariance
   shared,      ///< the cloud searches for the centres; draws about them are weighted by (6.3)
 };
 

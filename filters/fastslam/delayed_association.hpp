@@ -70,7 +70,7 @@ class InitialisationOnPaths {
   struct Kept {
     std::size_t count = 0;                 ///< number of detections
     std::array<std::uint32_t, 2> slots{};  ///< slots of the poses of the sensor
-    std::array<double, 2> values{};        ///< [m] or [rad]
+    std::array<double, 2> values{};        ///< [m] or [rad] values of the kept detections
   };
   using Waiting = typename WaitingLandmarks<Kept>::Waiting;
 

@@ -77,7 +77,7 @@ std::unique_ptr<SlamFilter> make_fastslam2(const FilterSetup& setup) {
   return make_refined<Real, SensorPolicy>(setup, Linearised(), Linearised());
 }
 
-/// Make the filter for the sensor of the setup.
+/// These functions make the filter for the sensor of the setup.
 template <class Real>
 std::unique_ptr<SlamFilter> make_fastslam1_of_sensor(const FilterSetup& setup) {
   return with_sensor(setup.belief.sensor, [&](const auto& sensor_policy) {
@@ -101,7 +101,7 @@ extern template std::unique_ptr<SlamFilter> make_fastslam2_of_sensor<Lanes>(cons
 FilterKind refined_kind(const char* name, const char* long_name, const char* source,
                         std::vector<Parameter> options,
                         std::unique_ptr<SlamFilter> make(const FilterSetup&));
-/// `kind` for all sensors, mounted anywhere.
+/// Returns `kind` with support for all sensors, mounted anywhere.
 FilterKind of_all_sensors(FilterKind kind);
 
 FilterKind fastslam1_kind();

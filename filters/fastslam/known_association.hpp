@@ -48,7 +48,7 @@ class KnownAssociation {
   [[gnu::always_inline]] Match<Real, Held&, AllLanes> match(std::size_t b, std::size_t k) const {
     return {opened_[k].at(b), seen_[k], {}};
   }
-  /// Nothing is to be stored, since match() refers to the map itself.
+  /// Stores nothing, since match() refers to the map itself.
   template <class Changed>
   void store(std::size_t /*b*/, std::size_t /*k*/, const Changed& /*match*/) const {}
   /// There are no association errors: clutter is ignored, and all other detections are correct.
@@ -94,7 +94,7 @@ class KnownAssociation {
  private:
   static constexpr std::int32_t kUnseen = -1;
 
-  std::vector<std::int32_t> slot_of_;  ///< {identity}
+  std::vector<std::int32_t> slot_of_;  ///< {identity} slot of the landmark
   std::vector<std::uint32_t> slots_;
   std::vector<Measurement<Real>> seen_;
   std::vector<Detection> new_;

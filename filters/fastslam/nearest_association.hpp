@@ -68,7 +68,7 @@ class NearestAssociation {
     return sum;
   }
 
-  /// associate() has fetched all blocks.
+  /// Does nothing, since associate() has fetched all blocks.
   void fetch(std::size_t /*b*/) const {}
   using Matched = Match<Real, Held, decltype(Real() > Real())>;
   Matched match(std::size_t b, std::size_t k) const {
@@ -224,8 +224,8 @@ class NearestAssociation {
   Scan scan_;  ///< valid during update() only
   std::vector<Measurement<Real>> seen_;
   std::vector<std::uint32_t> slots_;
-  std::vector<Pairing> pairings_;        ///< {particle, detection}
-  std::vector<NearestSearch> searches_;  ///< {block, detection, lane}
+  std::vector<Pairing> pairings_;        ///< {particle, detection} results of the last scan
+  std::vector<NearestSearch> searches_;  ///< {block, detection, lane} searches of the last scan
   std::vector<typename Maps::OpenSlot> opened_;
   std::vector<FreshLandmark<Real>> fresh_;
 };

@@ -34,12 +34,12 @@ class ParticleMaps {
   /// A slot that is read and written block by block, in any order or in parallel.
   class OpenSlot {
    public:
-    /// Block b, rearranged to the present particles at the first visit of the scan.
+    /// Returns block b, rearranged to the present particles at the first visit of the scan.
     Landmark& fetch(std::size_t b) const {
       if (!source_.empty()) to_[b] = gather_block<Real, Landmark>(from_, source_, b);
       return to_[b];
     }
-    /// Block b, after fetch().
+    /// Returns block b, which fetch() must have rearranged.
     Landmark& at(std::size_t b) const { return to_[b]; }
 
    private:

@@ -89,7 +89,8 @@ class PackedCandidates {
     for (std::size_t i = 0; i < lanes_of_.size(); ++i)
       lanes_of_[i] = static_cast<std::uint32_t>(i % particles);
     for (std::size_t i = 0; i < place_of_.size(); ++i) {
-      const std::size_t member = i < numbers_ ? i / particles : 0;  // the filler belongs to none
+      // Positions behind the last candidate belong to none.
+      const std::size_t member = i < numbers_ ? i / particles : 0;
       place_of_[i] = static_cast<std::uint32_t>(member * kLanes + i % particles);
     }
   }
@@ -153,7 +154,8 @@ class OwnEvolution {
     begin(bounds, chance);
     const Real bound(bounds);
     const SearchBox<Real, 3> box{{Real(0.0), Real(0.0), Real(0.0)}, {bound, bound, bound}, {}};
-    const auto used = 2 * static_cast<std::uint32_t>(population_.size());  // blocks, by begin()
+    // Number of blocks of the stream that begin() uses.
+    const auto used = 2 * static_cast<std::uint32_t>(population_.size());
     const auto evaluation = [&](Candidates candidates, std::span<Real> fitness) {
       evaluate(candidates, fitness);
     };
@@ -210,10 +212,12 @@ class OwnEvolution {
 
   std::vector<std::array<Real, 3>> population_;
   PackedCandidates<Real> packed_;
-  std::vector<PoseFitness<Real>> fitness_;           ///< {pattern of packed lanes}
-  std::vector<PoseFactor<Real>> factors_;            ///< {pattern of packed lanes}
-  std::vector<MatchedDetection<Real>> scan_;         ///< {detection}
-  std::vector<MatchedDetection<Real>> packed_scan_;  ///< {pattern, detection}
+  /// {pattern of packed lanes} fitness of the particles in the lanes.
+  std::vector<PoseFitness<Real>> fitness_;
+  std::vector<PoseFactor<Real>> factors_;  ///< {pattern of packed lanes} factors of their Gaussians
+  std::vector<MatchedDetection<Real>> scan_;  ///< {detection} matches of the scan
+  /// {pattern, detection} the matches in packed lanes.
+  std::vector<MatchedDetection<Real>> packed_scan_;
   EvolutionScratch<Real, 3> scratch_;
 };
 
@@ -223,7 +227,7 @@ class OwnEvolution {
 template <class Real>
 class CloudEvolution {
  public:
-  /// The fitness: (10.1) or (10.2).
+  /// The fitness that is maximised: (10.1) or (10.2) of EQUATIONS.
   enum class Objective { likelihood, posterior };
 
   /// Collects the poses of the particles and their matches.
@@ -287,7 +291,7 @@ class CloudEvolution {
             wrap(Real(moments_.mean.heading + m[2]))};
   }
 
-  /// mean +- bounds standard deviations, enlarged to contain all members.
+  /// Returns the box mean +- bounds standard deviations, enlarged to contain all members.
   SearchBox<double, 3> box(double bounds) const {
     const Symmetric3<double> P =
         turned(symmetric_of(moments_.covariance), Direction<double>{frame_.cosine, -frame_.sine});
@@ -305,7 +309,7 @@ class CloudEvolution {
 
   PoseMoments moments_;
   Direction<double> frame_{1.0, 0.0};
-  std::vector<MatchedDetection<Real>> matched_;  ///< {block, detection}
+  std::vector<MatchedDetection<Real>> matched_;  ///< {block, detection} matches of the scan
   std::vector<PoseFitness<Real>> fitness_;       ///< {block} fitness of its particles
   std::vector<std::array<double, 3>> population_;
   EvolutionScratch<double, 3> scratch_;

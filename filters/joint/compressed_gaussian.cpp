@@ -23,7 +23,8 @@ std::pair<Eigen::Index, double> longest_of(const Eigen::MatrixXd& columns) {
   return longest;
 }
 
-/// Makes the next `Width` vectors from column `longest`, and subtracts their share from every one.
+/// Makes the next `Width` vectors from column `longest`, and subtracts their share from every
+/// column.
 template <int Width>
 void take_out(Eigen::Index longest, double squared, Eigen::MatrixXd& columns,
               Eigen::Ref<Eigen::Matrix<double, Eigen::Dynamic, Width>> vectors,
@@ -54,7 +55,7 @@ constexpr std::size_t kDetectionsUncompressed = 5000;
 
 }  // namespace
 
-/// Gram-Schmidt; the longest residual is taken first.
+/// Orthonormalises the columns by Gram-Schmidt. The longest residual is always taken next.
 void Basis::span(Eigen::MatrixXd& columns, Retraction retraction) {
   const Eigen::Index width = retraction == Retraction::invariant ? 2 : 1;
   const Eigen::Index most = std::min(width * columns.cols(), columns.rows());
@@ -168,8 +169,8 @@ CompressedGaussian::Drift CompressedGaussian::drift() const {
   return {coefficients_of_mean().norm(), std::sqrt(dot(Y.reshaped(), Y.reshaped()))};
 }
 
-/// It only considers the range: v^2 / S of the range is at most D^2, and the standard deviation of
-/// a difference is at most the sum of both.
+/// Considers the range only: v^2 / S of the range is at most D^2, and the standard deviation of a
+/// difference is at most the sum of both.
 bool CompressedGaussian::is_out_of_reach(std::size_t slot, const Drift& drift, double range,
                                          double sigmas) const {
   if (is_near(slot)) return false;
@@ -349,7 +350,8 @@ void CompressedGaussian::gather_near() {
   }
 }
 
-/// Columns are scaled by standard deviations, so that dropped residuals are small in each of them.
+/// Computes the basis of the far landmarks. Columns are scaled by standard deviations, so that
+/// dropped residuals are small in each of them.
 void CompressedGaussian::span_far() {
   const Eigen::Index n = row_of(chosen_.size());
   sigma_.resize(3 + n);

@@ -80,8 +80,8 @@ class CompressedGaussian {
 
   /// Bounds on the change of a far landmark since it became far, per unit of its `Far::share`.
   struct Drift {
-    double mean;      ///< [m]
-    double variance;  ///< [m^2]
+    double mean;      ///< [m] bound on the change of the mean
+    double variance;  ///< [m^2] bound on the change of the variance
   };
   Drift drift() const;
   /// Returns whether no detection up to `range` [m] from the pose can lie within `sigmas` standard
@@ -97,18 +97,18 @@ class CompressedGaussian {
 
   /// Makes the given landmarks near, with others around the vehicle, unless they are near already.
   void make_near(std::span<const std::uint32_t> slots);
-  /// JointGaussian::update_with() for a landmark that is near.
+  /// Does what JointGaussian::update_with() does, for a landmark that is near.
   ObservationStatus update_with(std::size_t slot, const Eigen::Vector2d& detected, int iterations,
                                 ExpectedObservation& expected) {
     assert(is_near(slot));
     ++updates_;
     return near_.update_with(point_of_[slot], detected, iterations, expected);
   }
-  /// JointGaussian::centre_on_pose(); makes all landmarks near.
+  /// Does what JointGaussian::centre_on_pose() does, and makes all landmarks near.
   void centre_on_pose();
   void append(const Eigen::Vector2d& detection,
               const Eigen::Vector2d& behind = Eigen::Vector2d::Zero());
-  /// JointGaussian::append(), replace() and covariance_with() for points that are near.
+  /// These functions do what those of JointGaussian do, for points that are near.
   void append(NewPoint point);
   void replace(std::size_t slot, NewPoint point);
   Matrix7 covariance_with(std::size_t first, std::size_t second) const;
@@ -152,17 +152,17 @@ class CompressedGaussian {
 
   JointGaussian near_;  ///< pose, near landmarks, stand-ins, and landmarks initialised later
   Retraction retraction_;
-  std::vector<std::uint32_t> point_of_;  ///< {slot} its point in near_, or kFar
+  std::vector<std::uint32_t> point_of_;  ///< {slot} point of the landmark in near_, or kFar
   std::size_t most_near_;                ///< number of points beyond which to choose again
   std::size_t updates_ = 0;              ///< number of detections since the near ones were chosen
-  double balance_ = 0.0;        ///< saved by compression, in units of detections of the whole map
+  double balance_ = 0.0;  ///< work saved by compression, in units of detections of the whole map
   bool is_suspended_ = false;   ///< all landmarks are near, since compression does not pay off
-  Eigen::Index stand_ins_ = 0;  ///< their first row in near_
+  Eigen::Index stand_ins_ = 0;  ///< first row of the stand-ins in near_
   Basis basis_;                 ///< W, over the rows of whole_
   MapMoments whole_;            ///< moments of far landmarks when the near ones were chosen
-  std::vector<Far> far_;        ///< {slot}
+  std::vector<Far> far_;        ///< {slot} landmarks when the near ones were chosen
   Eigen::MatrixXd columns_;  ///< scratch: C, each column divided by its standard deviation sigma_
-  Eigen::VectorXd sigma_;    ///< scratch
+  Eigen::VectorXd sigma_;    ///< scratch: standard deviations of the columns
   MapMoments gathered_;      ///< scratch: the near landmarks
   std::vector<std::pair<double, std::uint32_t>> by_distance_;  ///< scratch: [m^2], slot
   std::vector<std::uint32_t> chosen_;                          ///< scratch: slots

@@ -41,7 +41,7 @@ void DelayedInitialisation::add_points_of(std::int32_t identity,
   if (waiting->kept.points > 1) slots.push_back(waiting->kept.second);
 }
 
-/// The position of the sensor.
+/// Returns the position of the sensor as a point.
 NewPoint DelayedInitialisation::sensor_point(const Pose& pose) const {
   const Mounting& mounting = belief_.sensor.mounting;
   return {.mean = place_of(mounting.pose_of(pose)),
@@ -49,7 +49,7 @@ NewPoint DelayedInitialisation::sensor_point(const Pose& pose) const {
           .noise = Eigen::Matrix2d::Zero()};
 }
 
-/// A point on the ray of a bearing.
+/// Returns a point on the ray of a bearing.
 NewPoint DelayedInitialisation::ray_point(const Pose& pose, double bearing) const {
   const Direction<double> ray =
       direction_of(belief_.sensor.mounting.pose_of(pose).heading + bearing);
@@ -62,7 +62,7 @@ NewPoint DelayedInitialisation::ray_point(const Pose& pose, double bearing) cons
   return point;
 }
 
-/// The landmark that the kept points and, for bearings, this detection fix.
+/// Returns the landmark that the kept points and, for bearings, this detection fix.
 std::optional<TriangulatedLandmark> DelayedInitialisation::DetectionPair::landmark(
     double side) const {
   const Pose& pose = gaussian.pose().mean;
@@ -100,7 +100,7 @@ bool DelayedInitialisation::DetectionPair::cross_well() const {
   return crosses_well(spread, nearest, by.waiting_.of_bearings(), by.variance_);
 }
 
-/// D^2 of a range for a landmark on that side.
+/// D^2 of the detected range if the landmark is on the given side.
 double DelayedInitialisation::DetectionPair::squared_distance(double side) const {
   const double never = std::numeric_limits<double>::infinity();
   const auto at = landmark(side);
@@ -123,7 +123,7 @@ bool DelayedInitialisation::can_advance(const CompressedGaussian& gaussian,
   return waiting_.can_advance(waiting, DetectionPair{*this, gaussian, waiting.kept, detection});
 }
 
-/// Adds a point, or reuses a free one.
+/// Adds a point, or reuses a free one, and returns its slot.
 std::uint32_t DelayedInitialisation::add(CompressedGaussian& gaussian, const NewPoint& point) {
   if (free_.empty()) {
     gaussian.append(point);
@@ -136,7 +136,8 @@ std::uint32_t DelayedInitialisation::add(CompressedGaussian& gaussian, const New
   return slot;
 }
 
-/// At most two points are kept: one bearing gives both, and finish() uses the second directly.
+/// Keeps at most two points. A first bearing gives both, and finish() uses the second bearing
+/// directly.
 void DelayedInitialisation::keep(CompressedGaussian& gaussian, Kept& kept,
                                  const Detection& detection) {
   if (kept.points > 1) return;

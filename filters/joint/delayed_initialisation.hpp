@@ -32,7 +32,7 @@ class DelayedInitialisation {
   struct Kept {
     std::size_t points = 0;                            ///< number of kept points, at most two
     std::uint32_t first = 0, second = 0;               ///< points of the Gaussian
-    Eigen::Vector2d ranges = Eigen::Vector2d::Zero();  ///< [m] of the first two detections
+    Eigen::Vector2d ranges = Eigen::Vector2d::Zero();  ///< [m] the first two detected ranges
   };
   using Waiting = WaitingLandmarks<Kept>::Waiting;
 

@@ -128,7 +128,8 @@ JointEstimate JointBelief::joint(std::size_t landmarks) const {
   return joint;
 }
 
-/// Greatest distance [m] from the pose of any position that the scan may show; 0 for an empty scan.
+/// Largest distance [m] from the pose at which the scan may show a position; infinite if a
+/// detection determines no distance.
 double JointBelief::reach_of(Scan scan) const {
   double range = 0.0;
   for (const Detection& detection : scan) {
@@ -138,8 +139,8 @@ double JointBelief::reach_of(Scan scan) const {
   return range + sensor_.mounting.distance();
 }
 
-/// Loops over landmarks first, since the prediction of one serves all detections. Landmarks beyond
-/// both gates of all detections are skipped.
+/// Pairs the scan by nearest neighbour. The outer loop is over landmarks, since the prediction of
+/// one serves all detections. Landmarks beyond both gates of all detections are skipped.
 void JointBelief::pair_nearest(Scan scan) {
   searches_.assign(scan.size(), {});
   const double range = reach_of(scan);
@@ -161,15 +162,16 @@ void JointBelief::pair_nearest(Scan scan) {
   association_.pair_nearest(scan, searches_);
 }
 
-/// Predicts the detection of a landmark; returns false if it cannot be used. A fault is counted.
+/// Predicts the detection of a landmark, and counts a fault. Returns false if the prediction cannot
+/// be used.
 bool JointBelief::predict(std::size_t slot, ExpectedObservation& expected) {
   const auto status = linearisation_->predict(system_, slot, expected);
   if (status == CompressedGaussian::ObservationStatus::faulty) ++outcome_.faults;
   return status == CompressedGaussian::ObservationStatus::usable;
 }
 
-/// Reports the innovation before the detection, while the log-likelihood is that of the last
-/// linearisation, which is Laplace's approximation.
+/// Updates the belief with a detection. It reports the innovation before the detection, while the
+/// log-likelihood is that of the last linearisation, which is Laplace's approximation.
 void JointBelief::update_with(std::size_t k, const Detection& detection) {
   const std::size_t slot = point_of_[association_.pairings()[k].landmark];
   const Eigen::Vector2d detected = vector_of(detection);
@@ -191,8 +193,8 @@ void JointBelief::update_with(std::size_t k, const Detection& detection) {
       log_normal_density(distance, L, static_cast<double>(components_of(sensor_).size()));
 }
 
-/// The rotation of the invariant error is about the estimate, since its covariance is transformed
-/// after every detection.
+/// Returns the points about which the system rotates. The rotation of the invariant error is about
+/// the estimate, since its covariance is transformed after every detection.
 ObservationPoint JointBelief::rotation_point(std::size_t slot) const {
   if (retraction_ == Retraction::invariant || !fixes_landmark(sensor_))
     return {system_.gaussian.pose().mean, system_.gaussian.mean_of(slot)};

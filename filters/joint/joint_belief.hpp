@@ -43,7 +43,7 @@ class JointBelief {
   PoseMoments pose_after(const MotionIncrement& motion) const;
   /// Number of landmarks in the map.
   std::size_t landmarks() const { return point_of_.size(); }
-  /// Landmark k: the one of identity k with known association, else the k-th initialised.
+  /// Returns landmark k: the one of identity k with known association, else the k-th initialised.
   std::optional<LandmarkEstimate> landmark(std::size_t k) const;
   /// Pose and landmarks 0 to `landmarks` - 1; NaN for landmarks that the map does not have.
   JointEstimate joint(std::size_t landmarks) const;
@@ -63,7 +63,7 @@ class JointBelief {
   }
   /// A detection that updated the belief.
   struct UsedDetection {
-    std::size_t detection;  ///< its index in the scan
+    std::size_t detection;  ///< index of the detection in the scan
     Eigen::Vector2d innovation;
     Eigen::Matrix2d covariance;  ///< S = H P H' + R
   };
@@ -85,7 +85,7 @@ class JointBelief {
   MapAssociation association_;
   std::unique_ptr<Linearisation> linearisation_;
   LinearisedSystem system_;              ///< its points are used if the sensor fixes landmarks
-  std::vector<std::uint32_t> point_of_;  ///< {landmark} its slot in the Gaussian
+  std::vector<std::uint32_t> point_of_;  ///< {landmark} slot of the landmark in the Gaussian
   DelayedInitialisation delayed_;
   std::vector<char> advancing_;  ///< scratch: {detection} whether it advances a landmark
   int iterations_;
@@ -93,7 +93,7 @@ class JointBelief {
   Retraction retraction_;
   Eigen::Vector2d sigma_;  ///< deviations of the components of a detection
   double rotation_information_ = 0.0;
-  std::vector<NearestSearch> searches_;  ///< scratch
+  std::vector<NearestSearch> searches_;  ///< scratch: {detection} searches of a scan
   std::vector<std::uint32_t> matched_;   ///< scratch: slots that the current scan needs
   std::vector<UsedDetection> used_detections_;
   UpdateOutcome outcome_;

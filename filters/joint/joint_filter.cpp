@@ -17,7 +17,7 @@ struct JointFilterSettings {
   Retraction retraction = Retraction::additive;
   int iterations = 0;  ///< number of linearisations after the first
   Motion motion = Motion::linearised;
-  Moments moments = Moments::map;  ///< those that it reports
+  Moments moments = Moments::map;  ///< moments that the filter reports
   std::unique_ptr<Linearisation> linearisation = at_estimate();
 };
 
@@ -85,9 +85,9 @@ class JointFilter final : public SlamFilter {
   Belief belief_;
   Motion motion_form_;
   JointBelief joint_;
-  MotionIncrement motion_;  ///< since the last scan
+  MotionIncrement motion_;  ///< motion since the last scan
   bool is_at_scan_ = false;
-  PoseMoments pose_at_scan_;  ///< before new landmarks were initialised
+  PoseMoments pose_at_scan_;  ///< moments at the last scan, before landmarks were initialised
   ScanReport report_;
   MixtureInnovations<double> innovations_;  ///< innovations of a mixture of one
 };
@@ -107,7 +107,7 @@ std::unique_ptr<SlamFilter> one_gaussian(const FilterSetup& setup, Retraction re
                                                            .moments = moments_of(setup.options)});
 }
 
-/// EKF-SLAM that linearises at other points than the estimate.
+/// Makes EKF-SLAM that linearises at other points than the estimate.
 template <std::unique_ptr<Linearisation> kLinearisation()>
 std::unique_ptr<SlamFilter> linearised_elsewhere(const FilterSetup& setup) {
   return std::make_unique<JointFilter>(setup,
@@ -147,7 +147,7 @@ FilterKind joint_kind(const char* name, const char* long_name, const char* sourc
           .make = make};
 }
 
-/// A kind that supports all sensors.
+/// Makes a filter kind that supports all sensors.
 FilterKind one_gaussian_kind(const char* name, const char* long_name, const char* source,
                              std::unique_ptr<SlamFilter> make(const FilterSetup&)) {
   FilterKind kind =

@@ -130,7 +130,7 @@ PoseMoments JointGaussian::pose_after(const LinearisedMotion& motion) const {
   return moved;
 }
 
-/// Flattened, since it is called at every control step.
+/// This function is flattened, since it is called at every control step.
 [[gnu::flatten]] PoseMoments JointGaussian::pose_after(const MotionIncrement& motion) const {
   return pose_after(linearised(motion));
 }
@@ -198,8 +198,8 @@ void JointGaussian::replace(std::size_t slot, const NewPoint& point) {
   mirror_packs(map_.covariance, rows());
 }
 
-/// The point is linear in its arguments, so its covariances are sums of theirs. The rows of `seen_`
-/// are its covariances with the existing points.
+/// Writes a point to its rows. The point is linear in its arguments, so its covariances are sums of
+/// theirs. The rows of `seen_` are its covariances with the existing points.
 void JointGaussian::put(Eigen::Index row, const NewPoint& point) {
   const Matrix23& Gx = point.by_pose;
   auto columns = seen_.topRows(rows());
@@ -276,7 +276,7 @@ JointGaussian::ObservationStatus JointGaussian::linearise_after(
                            .factor = {},
                            .ahead = {},
                            .wraps = wraps_};
-  if (retraction_ == Retraction::invariant) {  // the error is that at the estimate before
+  if (retraction_ == Retraction::invariant) {  // the error belongs to the estimate before the step
     next.pose_jacobian.col(2) += next.pose_jacobian.leftCols<2>() * quarter_turned(pose_way) +
                                  next.landmark_jacobian * quarter_turned(landmark_way);
   }

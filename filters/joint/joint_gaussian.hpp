@@ -53,7 +53,7 @@ struct ExpectedObservation {
   Matrix23 pose_jacobian;
   Eigen::Matrix2d landmark_jacobian;
   Eigen::Vector2d observation;  ///< predicted at the point of linearisation
-  InnovationFactor factor;      ///< factor of S
+  InnovationFactor factor;      ///< Cholesky factor of S
   /// H times the step from the estimate to the point of linearisation; not wrapped.
   Eigen::Vector2d ahead = Eigen::Vector2d::Zero();
   Wraps wraps = {false, true};  ///< angles among the components
@@ -66,15 +66,16 @@ struct ExpectedObservation {
 
 /// A motion from the present pose, linearised there or at another point.
 struct LinearisedMotion {
-  Pose mean;                   ///< pose after it
-  Eigen::Vector2d by_heading;  ///< [m/rad] derivative of the position by the heading before it
-  Eigen::Matrix3d noise;       ///< added to the covariance
+  Pose mean;  ///< pose after the motion
+  /// [m/rad] derivative of the position by the heading before the motion.
+  Eigen::Vector2d by_heading;
+  Eigen::Matrix3d noise;  ///< covariance that the motion adds
 };
 
 /// The point at which an observation is linearised.
 struct ObservationPoint {
   Pose pose;
-  Eigen::Vector2d landmark;  ///< [m]
+  Eigen::Vector2d landmark;  ///< [m] position of the landmark
 };
 
 /// A new point of the map, linear in the pose, in points of the map, and in noise of its own.
@@ -83,7 +84,7 @@ struct NewPoint {
     std::size_t slot;
     Eigen::Matrix2d derivative;
   };
-  Eigen::Vector2d mean;            ///< [m]
+  Eigen::Vector2d mean;            ///< [m] mean of the point
   Matrix23 by_pose;                ///< derivative by the pose
   Eigen::Matrix2d noise;           ///< [m^2] covariance due to its own noise
   std::span<Part> by_points = {};  ///< derivatives by points of the map
@@ -108,10 +109,10 @@ class JointGaussian {
 
   const Belief& belief() const { return belief_; }
   const PoseMoments& pose() const { return pose_; }
-  /// `motion`, linearised at the estimate. Fx of several steps is again [1 0 a; 0 1 b; 0 0 1],
-  /// where a and b are sums over the steps, so that one motion for many steps is exact.
+  /// Returns `motion`, linearised at the estimate. Fx of several steps is again [1 0 a; 0 1 b; 0 0
+  /// 1], where a and b are sums over the steps, so that one motion for many steps is exact.
   LinearisedMotion linearised(const MotionIncrement& motion) const;
-  /// The same by sigma points of the heading before it (EQUATIONS (15.14)).
+  /// Returns `motion`, linearised by sigma points of the heading before it (EQUATIONS (15.14)).
   LinearisedMotion regressed(const MotionIncrement& motion) const;
   /// Predicted moments of the pose after `motion`.
   PoseMoments pose_after(const LinearisedMotion& motion) const;
@@ -139,8 +140,8 @@ class JointGaussian {
                                                       ExpectedObservation& expected) const {
     return predict_observation(point(slot), expected);
   }
-  /// The same by sigma points of the landmark relative to the pose (EQUATIONS (15.13)): mean and
-  /// slopes of the regression, and S with the nonlinear part.
+  /// Predicts the detection of `landmark` by sigma points of its position relative to the pose
+  /// (EQUATIONS (15.13)): mean and slopes of the regression, and S with the nonlinear part.
   [[nodiscard]] ObservationStatus predict_by_sigma_points(const PointMoments& landmark,
                                                           ExpectedObservation& expected) const;
   /// Conditions the Gaussian on `detected`, which is predicted by `expected`. The model is
@@ -201,9 +202,9 @@ class JointGaussian {
   MapMoments map_;
   Columns2 seen_;                          ///< scratch: columns of one landmark
   Eigen::Matrix<double, 3, 2> gain_pose_;  ///< P H' L^-T, the rows of the pose
-  Columns4 gain_map_;                      ///< rows of the map, and columns of carry_error()
-  Columns3 moved_, halved_;                ///< scratch of centre_on_pose()
-  Eigen::Matrix2Xd map_step_;              ///< [m] step of the landmarks at one detection
+  Columns4 gain_map_;          ///< P H' L^-T, the rows of the map, and columns of carry_error()
+  Columns3 moved_, halved_;    ///< scratch of centre_on_pose()
+  Eigen::Matrix2Xd map_step_;  ///< [m] step of the landmarks at one detection
 };
 
 }  // namespace montecarta::filters

@@ -85,7 +85,7 @@ bool stands_still(const MotionIncrement& motion) {
 
 class AtEstimate final : public Linearisation {
  public:
-  /// It omits the derivatives, since it is called at every control step.
+  /// Computes no derivatives, since it is called at every control step.
   PoseMoments pose_after(const LinearisedSystem& system,
                          const MotionIncrement& motion) const override {
     return system.gaussian.pose_after(motion);
@@ -94,7 +94,8 @@ class AtEstimate final : public Linearisation {
 
 class AtFirstEstimates : public Linearisation {
  public:
-  /// A vehicle that has not moved keeps its point, and nothing is linearised.
+  /// Linearises at the first estimates. A vehicle that has not moved keeps its point, and nothing
+  /// is linearised.
   LinearisedMotion linearised(const LinearisedSystem& system,
                               const MotionIncrement& motion) const override {
     LinearisedMotion linearised = system.gaussian.linearised(motion);
@@ -139,7 +140,7 @@ class RelativeToVehicle final : public Linearisation {
     frame_.start(start, gaussian);
   }
   void end_scan(CompressedGaussian& gaussian) override { frame_.centre(gaussian); }
-  /// The estimates, since the frame of the map alone rotates.
+  /// Returns the estimates, since only the frame of the map rotates.
   ObservationPoint rotation_point(const LinearisedSystem& system, std::size_t slot) const override {
     return {system.gaussian.pose().mean, system.gaussian.mean_of(slot)};
   }

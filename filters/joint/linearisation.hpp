@@ -33,7 +33,7 @@ class LinearisationPoints {
   void append(const Eigen::Vector2d& away) { landmarks_.emplace_back(place_of(pose_) + away); }
 
  private:
-  Pose pose_;  ///< includes the heading of the linearisation
+  Pose pose_;  ///< point of the vehicle, with the heading of the linearisation
   std::vector<Eigen::Vector2d> landmarks_;
 };
 
@@ -52,7 +52,7 @@ struct LinearisedSystem {
 class Linearisation {
  public:
   virtual ~Linearisation() = default;
-  /// The Gaussian has just started at `start`.
+  /// Called when the Gaussian has just started at `start`.
   virtual void start(const Pose& /*start*/, CompressedGaussian& /*gaussian*/) {}
 
   virtual LinearisedMotion linearised(const LinearisedSystem& system,
@@ -64,7 +64,7 @@ class Linearisation {
                                                         ExpectedObservation& expected) const;
   /// Vector [m] to the estimated pose from the one at which a new landmark is linearised.
   virtual Eigen::Vector2d offset(const LinearisedSystem& system) const;
-  /// All detections of a scan have been used.
+  /// Called when all detections of a scan have been used.
   virtual void end_scan(CompressedGaussian& /*gaussian*/) {}
   /// The points of vehicle and landmark about which the linearised system can be rotated.
   virtual ObservationPoint rotation_point(const LinearisedSystem& system, std::size_t slot) const;

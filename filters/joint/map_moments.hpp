@@ -69,7 +69,7 @@ void write_columns(Eigen::MatrixXd& map, Eigen::Index row, Eigen::Index rows,
 
 /// The moments of the points of a map, in packs; rows after the last point are zero.
 struct MapMoments {
-  Eigen::VectorXd mean;                            ///< [m]
+  Eigen::VectorXd mean;                            ///< [m] means of the positions
   Eigen::Matrix<double, Eigen::Dynamic, 3> cross;  ///< covariance with (x, y, heading)
   Eigen::MatrixXd covariance;                      ///< lower triangle and the packs on the diagonal
 

@@ -71,7 +71,8 @@ template <std::size_t N>
   for (std::size_t q = 0; q < N; ++q) {
     sum[q] = Lanes::load_unaligned(c + static_cast<Eigen::Index>(q) * stride);
   }
-  const double* factor = factors.data() + j * factors.rows();  // there may be no row
+  // A pointer, since there may be no row.
+  const double* factor = factors.data() + j * factors.rows();
   for (Eigen::Index k = 0; k < factors.rows(); ++k) {
     const Lanes row = Lanes::load_unaligned(a + static_cast<Eigen::Index>(Lanes::kSize) * k);
     for (std::size_t q = 0; q < N; ++q) {
@@ -122,10 +123,10 @@ class BlockedCholesky {
   /// Number of rows of A.
   Eigen::Index rows() const { return n_; }
 
-  /// b <- A^-1 b.
+  /// Replaces b by A^-1 b.
   void solve_in_place(Eigen::VectorXd& b) const;
 
-  /// P = A^-1.
+  /// Writes A^-1 to P.
   void inverse(Eigen::Ref<Eigen::MatrixXd> P) const;
 
  private:

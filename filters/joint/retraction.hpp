@@ -33,7 +33,7 @@ inline Eigen::Matrix2d exponential_jacobian(double turn) {
 /// J, the rotation by 90 degrees; J p is the displacement of p per rad of a rotation of the plane.
 inline Eigen::Matrix2d quarter_turn() { return Eigen::Matrix2d{{0.0, -1.0}, {1.0, 0.0}}; }
 
-/// J p.
+/// Returns J p.
 inline Eigen::Vector2d quarter_turned(const Eigen::Vector2d& p) { return {-p.y(), p.x()}; }
 
 /// Multiplies every column by A.
@@ -43,8 +43,8 @@ inline void apply(const Eigen::Matrix2d& A, Eigen::Ref<Eigen::Matrix2Xd> vectors
 
 /// The mean and covariance that a joint Gaussian reports (option `moments`).
 enum class Moments {
-  map,    ///< those of the Gaussian in map coordinates
-  pushed  ///< those that follow if it is Gaussian in the right-invariant chart (EQUATIONS 19)
+  map,    ///< moments of the Gaussian in map coordinates
+  pushed  ///< moments in map coordinates of a Gaussian in the right-invariant chart (EQUATIONS 19)
 };
 
 /// The option `moments` of a filter.
@@ -57,7 +57,8 @@ Moments moments_of(const FilterOptions& options);
 /// with the heading, the only nonlinear component. NaN of landmarks never observed stays NaN.
 void push_moments(Eigen::Ref<Eigen::VectorXd> mean, Eigen::Ref<Eigen::MatrixXd> covariance);
 
-/// The same for a pose, and for one point of a map with the given variance [rad^2] of the heading.
+/// These functions do the same for a pose, and for one point of a map with the given variance
+/// [rad^2] of the heading.
 PoseMoments pushed(const PoseMoments& pose);
 LandmarkEstimate pushed(const PointMoments& point, double heading_variance);
 

@@ -33,10 +33,10 @@ class RobocentricFrame {
   Eigen::Vector2d place_in_map(const Eigen::Vector2d& place) const;
   Eigen::Matrix<double, 2, 3> by_frame(const Eigen::Vector2d& place) const;
 
-  Eigen::Vector2d start_;       ///< [m] in the map
-  Eigen::Vector2d origin_;      ///< [m] the point in slot 0
-  Eigen::Vector2d axis_;        ///< unit vector from it to the other point
-  double heading_ = 0.0;        ///< [rad] of the axis
+  Eigen::Vector2d start_;       ///< [m] start of the vehicle in the map
+  Eigen::Vector2d origin_;      ///< [m] position of the point in slot 0
+  Eigen::Vector2d axis_;        ///< unit vector from the point in slot 0 to the other one
+  double heading_ = 0.0;        ///< [rad] heading of the axis
   Eigen::Matrix3d covariance_;  ///< covariance of origin and heading
 };
 

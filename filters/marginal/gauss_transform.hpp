@@ -79,7 +79,7 @@ class FarthestPoints {
   std::span<const Place> points_;
   std::vector<std::uint32_t> centres_;
   std::vector<std::uint32_t> owners_;
-  std::vector<double> distances_;  ///< squared, to the nearest centre
+  std::vector<double> distances_;  ///< {point} squared distance to the nearest centre
 };
 
 /// Calls visit(dimension, parent, same) for every monomial of degree 1 to `order` - 1 in D
@@ -225,12 +225,12 @@ class GaussTransform {
 
   double reach_ = 0.0;   ///< r: a source farther than this from a target is neglected
   double radius_ = 0.0;  ///< r_x: greatest distance of a source from its centre
-  int order_ = 1;        ///< p
+  int order_ = 1;        ///< p: degree at which the series ends
   std::size_t terms_ = 1;
   std::vector<std::uint32_t> centres_;  ///< indices of sources that are centres
   std::vector<std::uint32_t> owners_;   ///< {source} index of its centre
   std::vector<Place> sites_;            ///< positions of the centres
-  std::vector<Charges> coefficients_;   ///< {centre, monomial}
+  std::vector<Charges> coefficients_;   ///< {centre, monomial} coefficients of the series
 };
 
 }  // namespace montecarta::filters

@@ -89,7 +89,7 @@ class PoseKernels {
   }
 
   std::vector<PoseKernel<N>> kernels_;
-  std::vector<double> log_peaks_;  ///< scratch
+  std::vector<double> log_peaks_;  ///< scratch: logarithms of the peak densities
   double log_peak_ = 0.0;
   double reference_ = 0.0;
   double half_range_ = 0.0;
@@ -274,7 +274,7 @@ class KernelSummation {
   /// Writes logs[b] for targets[b]. Blocks are independent of each other.
   void sum(const StepContext& context, std::span<const BasicPose<Real>> targets,
            std::span<std::array<Real, N>> logs) {
-    constexpr std::size_t kPairsPerTask = 1U << 14;  // about 20 us
+    constexpr std::size_t kPairsPerTask = 1U << 14;  // a task takes about 20 us
     const std::size_t pairs_per_block = kLanesOf<Real> * kernels_.kernels().size();
     const std::size_t per_task = std::max<std::size_t>(1, kPairsPerTask / pairs_per_block);
     const BlockTasks<Real> tasks(targets.size(), per_task);
@@ -290,7 +290,7 @@ class KernelSummation {
   double tolerance_;
   PoseKernels<N> kernels_;
   IfgtSums<N> ifgt_;
-  std::vector<std::vector<Real>> scratch_;  ///< {task} for the transform
+  std::vector<std::vector<Real>> scratch_;  ///< {task} scratch of the transform
 };
 
 /// The ratio of the weights of a marginal filter to the likelihood: Sum_j w_j N(s_i; prior_j) /

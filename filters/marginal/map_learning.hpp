@@ -63,7 +63,7 @@ class LandmarkEvidence {
   /// The innovation for a position observed from a pose, and the vector to the position.
   struct LandmarkInView {
     Real dx, dy, squared_range, range;
-    Real range_error, bearing_error;  ///< detected minus predicted
+    Real range_error, bearing_error;  ///< detected minus predicted values
   };
 
   [[gnu::always_inline]] LandmarkInView observation(std::size_t b, const Point& place) const {
@@ -181,7 +181,7 @@ class MapLearning {
     prior_ = settings_.mode == MapMode::recursive ? landmark : SharedLandmark{landmark.mean, {}};
     if (settings_.mode == MapMode::onestep_threshold &&
         cost(landmark.mean) <= settings_.threshold) {
-      return;  // dead zone of EQUATIONS 14
+      return;  // the landmark is in the dead zone of EQUATIONS 14
     }
     landmark.mean = settings_.solver == MapSolver::de
                         ? evolved_place(context.identity(Draw::evolution, index), heading, seen)
@@ -194,8 +194,9 @@ class MapLearning {
 
  private:
   static constexpr int kMostSteps = 20;
-  static constexpr double kSurelyGood = 1e-6;  // [m]
-  static constexpr double kShortStep = 1e-12;  // [m]
+  // [m] a shorter step is taken even if the cost does not fall.
+  static constexpr double kSurelyGood = 1e-6;
+  static constexpr double kShortStep = 1e-12;  // [m] a shorter step is the last one
 
   /// J of EQUATIONS (14.2): the objective of the detection plus the prior.
   double cost(const Point& place) {

@@ -182,11 +182,12 @@ class MarginalFilter final : public SlamFilter {
   MapLearning<Real> learning_;
   KernelRatios<Real> ratios_;
   MotionIncrement motion_;
-  Population<Real> population_;  ///< its weights are w
+  Population<Real> population_;  ///< the particles, whose weights are w
   Weights<Real> lambda_;
-  std::vector<BasicPose<Real>> poses_;       ///< drawn at the last scan that was used
-  std::vector<PoseGaussian<Real>> priors_;   ///< p(s | s_j)
-  std::vector<PoseGaussian<Real>> kernels_;  ///< p(s | s_j, z), if the proposal is the posterior
+  std::vector<BasicPose<Real>> poses_;      ///< drawn at the last scan that was used
+  std::vector<PoseGaussian<Real>> priors_;  ///< {block} p(s | s_j)
+  /// {block} p(s | s_j, z), if the proposal is the posterior.
+  std::vector<PoseGaussian<Real>> kernels_;
   MixtureInnovations<Real> innovations_;
   SharedMap map_;
   mutable std::optional<CloudMoments> moments_;  ///< moments of the poses, computed on demand

@@ -21,8 +21,8 @@ enum class Kernel {
 };
 /// The information that a landmark keeps from earlier scans (EQUATIONS 14).
 enum class MapMode {
-  onestep_converged,  ///< none: the best explanation of this scan alone
-  onestep_threshold,  ///< none, but it stays if it explains the scan well enough
+  onestep_converged,  ///< no information: it becomes the best explanation of this scan alone
+  onestep_threshold,  ///< no information, but it stays if it explains the scan well enough
   recursive,          ///< a quadratic summary of all earlier scans
 };
 enum class MapSolver { gauss_newton, de };
@@ -38,7 +38,7 @@ struct MapSettings {
   MapMode mode = MapMode::recursive;
   MapSolver solver = MapSolver::gauss_newton;
   MapObjective objective = MapObjective::likelihood;
-  double threshold = 0.0;  ///< onestep_threshold: sufficient objective
+  double threshold = 0.0;  ///< for onestep_threshold: objective that suffices
   std::size_t population = 30;
   EvolutionSettings evolution = {};
 };
@@ -48,9 +48,9 @@ struct MarginalSettings {
   Choice choice = Choice::by_weight;
   Kernel kernel = Kernel::prior;
   double kernel_floor_xy = 0.01;        ///< [m] noise added to x and y at every scan
-  double kernel_floor_heading = 0.001;  ///< [rad]
+  double kernel_floor_heading = 0.001;  ///< [rad] noise added to the heading at every scan
   KernelSums kernel_sums = KernelSums::direct;
-  double kernel_tolerance = 1e-9;  ///< ifgt: error relative to the sum of all weights
+  double kernel_tolerance = 1e-9;  ///< for ifgt: error relative to the sum of all weights
   MapSettings map = {};
 };
 

@@ -17,7 +17,7 @@ inline Point solve(const Symmetric2<double>& A, const Point& b) {
   const double y = (b.y - slope * b.x) / (A.yy - slope * A.xy);
   return {(b.x - A.xy * y) / A.xx, y};
 }
-/// A^-1.
+/// Returns A^-1.
 inline Symmetric2<double> inverted(const Symmetric2<double>& A) {
   const Point x = solve(A, {1.0, 0.0}), y = solve(A, {0.0, 1.0});
   return {x.x, x.y, y.y};
@@ -27,9 +27,9 @@ inline Symmetric2<double> inverted(const Symmetric2<double>& A) {
 /// about it given the pose.
 struct SharedLandmark {
   Point mean;
-  Symmetric2<double> information;  ///< Lambda [1/m^2]
+  Symmetric2<double> information;  ///< Lambda [1/m^2]: information about the position
 
-  /// Lambda^-1.
+  /// Returns Lambda^-1 [m^2].
   Symmetric2<double> covariance() const { return inverted(information); }
 };
 
@@ -76,7 +76,7 @@ class SharedAssociation : public MapAssociation {
   std::vector<SharedMatch> matches_;
   std::vector<Detection> fresh_;
   std::size_t unmatched_ = 0;
-  std::vector<NearestSearch> searches_;  ///< scratch
+  std::vector<NearestSearch> searches_;  ///< scratch: {detection} searches of a scan
 };
 
 /// The likelihood of poses for the matched detections of a scan, with the same map for all.

@@ -82,7 +82,7 @@ template <class Real, class V>
            .controls = kControlsOf<V>}};
 }
 
-/// The same without given directions.
+/// Does the same, and computes the direction of the pose and the turning angle of the control.
 template <class Real>
 LinearisedMove<Real> linearised_move(const BasicPose<Real>& pose, const Control& control,
                                      double duration, const Vehicle& vehicle) {

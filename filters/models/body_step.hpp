@@ -38,8 +38,8 @@ TurningAngle<Real> turning_angle_of(const Real& angle) {
 struct PilotInput {
   Control before;       ///< control of the previous step; zero at the first one
   double off;           ///< [rad] direction of the way-point minus the heading, not wrapped
-  double speed;         ///< [m/s] desired
-  double control_rate;  ///< [Hz]
+  double speed;         ///< [m/s] desired speed
+  double control_rate;  ///< [Hz] number of control steps per second
 };
 
 /// The place in which a number of a vehicle is set.
@@ -60,7 +60,7 @@ struct VehicleNumber {
 // A body that moves with constant velocity in its own frame and turns at a constant yaw rate: the
 // motion of all vehicles with a controlled yaw rate (EQUATIONS 1).
 
-/// The integration of such a motion over a step.
+/// The integration of a motion of constant velocity and yaw rate over a step.
 enum class Integration {
   arc,   ///< exactly: the velocity turns with the body
   euler  ///< the velocity keeps the direction from the beginning of the step
@@ -74,7 +74,7 @@ struct MeanDirection {
   Real along, across;
 };
 
-/// `turn` must be less than 1e5 rad.
+/// Returns the mean direction of a step with this turn, which must be less than 1e5 rad.
 template <class Real>
 MeanDirection<Real> mean_direction(const TurningAngle<Real>& turn) {
   const auto& [cosine, sine] = turn.direction;

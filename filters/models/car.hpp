@@ -23,12 +23,12 @@ struct Car {
     rear_wheel   ///< pose of the sensor, speed of a rear wheel (EQUATIONS 1)
   };
   Kind kind = Kind::front_axle;
-  double wheelbase = 4.0;                        ///< L [m]
-  double wheel_left = 0.0;                       ///< H [m]: rear wheel left of the axle's middle
+  double wheelbase = 4.0;                        ///< L [m]: distance between the axles
+  double wheel_left = 0.0;                       ///< H [m]: rear wheel, left of the axle's middle
   double sensor_ahead = 0.0;                     ///< a [m]: the sensor, ahead of the rear axle
-  double sensor_left = 0.0;                      ///< b [m]: sensor left of the middle
-  double steer_limit = 30.0 * kPi / 180.0;       ///< [rad] for the pilot
-  double steer_rate_limit = 20.0 * kPi / 180.0;  ///< [rad/s] for the pilot
+  double sensor_left = 0.0;                      ///< b [m]: the sensor, left of the middle
+  double steer_limit = 30.0 * kPi / 180.0;       ///< [rad] largest steering angle of the pilot
+  double steer_rate_limit = 20.0 * kPi / 180.0;  ///< [rad/s] largest steering rate of the pilot
 
   static constexpr std::array<const char*, 2> kNames = {"front_axle", "rear_wheel"};
   const char* name() const { return kNames[kind == Kind::front_axle ? 0 : 1]; }

@@ -11,8 +11,9 @@ namespace montecarta::models {
 /// (speed [m/s], yaw rate [rad/s]), the pose that of the middle of the axle (EQUATIONS 1).
 struct DifferentialDrive {
   Integration integration = Integration::arc;
-  double yaw_rate_limit = 90.0 * kPi / 180.0;  ///< [rad/s] for the pilot
-  double turn_on_spot = 45.0 * kPi / 180.0;    ///< [rad] for the pilot: it stops to turn beyond
+  double yaw_rate_limit = 90.0 * kPi / 180.0;  ///< [rad/s] largest yaw rate of the pilot
+  /// [rad] angle to the way-point beyond which the pilot turns on the spot.
+  double turn_on_spot = 45.0 * kPi / 180.0;
 
   static constexpr std::array<const char*, 1> kNames = {"differential_drive"};
   const char* name() const { return kNames[0]; }

@@ -13,10 +13,10 @@ namespace montecarta::models {
 
 /// A landmark in view, relative to the sensor.
 struct InView {
-  std::size_t landmark = 0;  ///< index
+  std::size_t landmark = 0;  ///< index of the landmark
   double dx = 0.0;           ///< [m] from the sensor, along the axes of the map
-  double dy = 0.0;           ///< [m]
-  double range = 0.0;        ///< [m]
+  double dy = 0.0;           ///< [m] from the sensor, along the axes of the map
+  double range = 0.0;        ///< [m] distance from the sensor
   double heading = 0.0;      ///< [rad] heading of the sensor
 };
 
@@ -51,7 +51,8 @@ class FieldOfView {
   }
 
  private:
-  /// Exactly 0 for an angle of pi, and below -1, which excludes nothing, for a full circle.
+  /// Returns the cosine of half the angle: exactly 0 for an angle of pi, and below -1, which
+  /// excludes nothing, for a full circle.
   static double cosine_of_half(double angle) {
     if (angle == kPi) return 0.0;
     return angle >= kTwoPi ? -2.0 : std::cos(angle / 2.0);

@@ -12,7 +12,7 @@ namespace montecarta::models {
 /// are measured (EQUATIONS 1).
 struct Omnidirectional {
   Integration integration = Integration::arc;
-  double yaw_rate_limit = 90.0 * kPi / 180.0;  ///< [rad/s] for the pilot
+  double yaw_rate_limit = 90.0 * kPi / 180.0;  ///< [rad/s] largest yaw rate of the pilot
 
   static constexpr std::array<const char*, 1> kNames = {"omnidirectional"};
   const char* name() const { return kNames[0]; }

@@ -20,12 +20,12 @@ struct Parameter {
   };
   std::string key = {};
   Kind kind = Kind::text;
-  std::string unit = {};                     ///< "" for none
+  std::string unit = {};                     ///< unit; "" if it has none
   std::optional<std::string> fallback = {};  ///< default value as text; nullopt: must be set
-  double least = 0.0;                        ///< inclusive, like `most`
+  double least = 0.0;                        ///< least value, inclusive like `most`
   double most = 0.0;
   std::vector<std::string> choices = {};
-  std::string meaning = {};  ///< one line, with equation
+  std::string meaning = {};  ///< explanation in one line, with equation
   std::string example = {};  ///< suggested by the error if the user must set it
   /// The default of a filter's option if the controls are noisy measurements of the true ones
   /// (scenario.noise = measured-control), where it differs.
@@ -45,7 +45,7 @@ Parameter choice_parameter(const char* key, const std::string& fallback,
 enum class Quantity : std::uint8_t {
   range,
   bearing,
-  forward,  ///< position of a landmark
+  forward,  ///< forward and left: position of a landmark relative to the sensor
   left,
   speed,
   steer,
@@ -59,10 +59,10 @@ constexpr bool wraps(Quantity quantity) { return quantity == Quantity::bearing; 
 
 /// Names and limits of a component in messages, logs and study files.
 struct Component {
-  const char* name;    ///< for instance "range", in messages
-  const char* column;  ///< for instance "range_m", in detections.csv or odometry.csv
+  const char* name;    ///< name in messages, for instance "range"
+  const char* column;  ///< name in files, e.g. "range_m" in detections.csv or odometry.csv
   double most;         ///< greatest magnitude allowed in a log
-  const char* limit;   ///< for instance "metres, a finite number": the limit in words
+  const char* limit;   ///< the limit in words, for instance "metres, a finite number"
   Parameter sigma;     ///< standard deviation of its noise
 };
 const Component& component_of(Quantity quantity);

@@ -65,7 +65,7 @@ Eigen::Vector2d detection_of(const Sensor& sensor, const RangeBearing<double>& f
   return std::visit([&](const auto& one) { return one.detection_of(from); }, sensor.kind);
 }
 
-/// Flattened, since it is called for every landmark near a detection.
+/// This function is flattened, since it is called for every landmark near a detection.
 [[gnu::flatten]] std::optional<LinearisedDetection> linearised_detection(const Sensor& sensor,
                                                                          const Pose& pose,
                                                                          const Point& landmark) {

@@ -18,7 +18,7 @@ namespace montecarta::models {
 /// Pose of a sensor in the frame of the vehicle (EQUATIONS 2).
 struct Mounting {
   double forward = 0.0;  ///< [m] from the vehicle's reference point
-  double left = 0.0;     ///< [m]
+  double left = 0.0;     ///< [m] from the vehicle's reference point
   double turn = 0.0;     ///< [rad] counter-clockwise from the heading
 
   bool is_none() const { return forward == 0.0 && left == 0.0 && turn == 0.0; }
@@ -48,7 +48,7 @@ struct Sensor {
   Mounting mounting = {};
 };
 
-/// The components of its detections, in order.
+/// Returns the components of the detections of a sensor, in order.
 std::span<const Quantity> components_of(const Sensor& sensor);
 std::string name_of(const Sensor& sensor);
 

@@ -8,7 +8,8 @@
 namespace montecarta::models {
 namespace {
 
-/// One row of a range-bearing detection as the first component; there is no second component.
+/// Returns one row of a range-bearing detection as the first component; there is no second
+/// component.
 std::optional<LinearisedDetection> one_row(Eigen::Index row, const Pose& sensor,
                                            const Point& landmark) {
   const auto both = RangeBearingSensor::linearised(sensor, landmark);

@@ -37,7 +37,7 @@ struct LinearisedDetection {
 
 /// The landmark that one detection fixes, with derivatives.
 struct PlacedLandmark {
-  Eigen::Vector2d point;                ///< [m]
+  Eigen::Vector2d point;                ///< [m] position of the landmark
   Eigen::Matrix<double, 2, 3> by_pose;  ///< derivative by the pose of the sensor
   Eigen::Matrix2d by_detection;
 };

@@ -14,7 +14,7 @@ namespace montecarta::models {
 
 /// A landmark that two detections fix.
 struct TriangulatedLandmark {
-  Eigen::Vector2d point;      ///< [m]
+  Eigen::Vector2d point;      ///< [m] position of the landmark
   Eigen::Matrix2d by_first;   ///< derivative by the first point of the map
   Eigen::Matrix2d by_second;  ///< derivative by the second point
   Matrix23 by_pose;           ///< derivative by the pose of the sensor
@@ -56,8 +56,8 @@ struct Sighting {
 
 /// A landmark that two sightings fix (EQUATIONS 15), given the path.
 struct Crossing {
-  Eigen::Vector2d point;       ///< [m]
-  Eigen::Matrix2d covariance;  ///< [m^2] due to the noise of both
+  Eigen::Vector2d point;       ///< [m] position of the landmark
+  Eigen::Matrix2d covariance;  ///< [m^2] covariance due to the noise of both sightings
 };
 
 /// Triangulates landmarks from pairs of detections of one sensor.
@@ -77,7 +77,7 @@ class TwoSightings {
                           const Sighting& third) const;
 
  private:
-  Sensor sensor_;  ///< without its mounting
+  Sensor sensor_;  ///< the sensor without its mounting
   double variance_;
   bool of_bearings_;
 };

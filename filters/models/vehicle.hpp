@@ -50,7 +50,7 @@ inline std::size_t moving_controls(std::span<const Quantity> controls) {
 template <class Real>
 using ControlOf = std::array<Real, Control::kMost>;
 
-/// The first N components.
+/// Returns the first N components of a control.
 template <std::size_t N, class Real>
 std::array<Real, N> first_of(const ControlOf<Real>& control) {
   std::array<Real, N> first;
@@ -73,7 +73,7 @@ BodyStep<Real> body_step_at(const V& vehicle, const ControlOf<Real>& control,
   if constexpr (V::kTurnsByAngle) step.turn = turning_angle.angle;
   return step;
 }
-/// The same with the turning angle computed from the control.
+/// Does the same with the turning angle that follows from the control.
 template <class V, class Real>
 BodyStep<Real> body_step_of(const V& vehicle, const ControlOf<Real>& control, double duration) {
   const Real angle = control[kLinearOf<V>] * Real(vehicle.angle_scale(duration));
@@ -94,7 +94,8 @@ struct DifferentiatedStep {
   std::array<BodyStep<double>, N> by_control;
 };
 
-/// travel() with component i equal to `size` and all others 0, the share of that component.
+/// Returns the share of component i in a step: travel() with that component equal to `size` and all
+/// others 0.
 template <class V>
 BodyStep<double> unit_travel(const V& vehicle, std::size_t i, double size,
                              const TurningAngle<double>& turning_angle, double duration) {

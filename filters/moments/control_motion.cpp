@@ -45,7 +45,7 @@ Column3<double> heading_column(const Symmetric3<double>& P) {
   return {P.xh * inverse, P.yh * inverse, root};
 }
 
-/// The turning angle that is the sum of two.
+/// Returns the sum of two turning angles.
 TurningAngle<double> at_sum(const TurningAngle<double>& a, const TurningAngle<double>& b) {
   const auto& [c, s] = a.direction;
   const auto& [d, t] = b.direction;
@@ -100,7 +100,7 @@ template <class V>
 /// A quadrature rule for functions of a control with normal noise, exact up to degree 5.
 template <std::size_t N>
 struct ControlRule {
-  std::array<double, N> nodes;  ///< in standard deviations
+  std::array<double, N> nodes;  ///< nodes in standard deviations
   std::array<double, N> weights;
   double sign;  ///< sign of the variance of a coefficient, and of the covariance (moments_of())
 };
@@ -149,7 +149,7 @@ BodyMoments moments_of(const std::array<BodyPart<N>, Parts>& parts, const Contro
   for (std::size_t i = 0; i < Parts; ++i) {
     const auto& [mean, variance, columns] = parts[i];
     const Column3<double> average = parts[i].average(rule);
-    Symmetric3<double> second;  // about the origin, for the coefficient 1
+    Symmetric3<double> second;  // second moment about the origin, for the coefficient 1
     for (std::size_t k = 0; k < N; ++k) add_outer(second, rule.weights[k], columns[k]);
     const double square = mean * mean;
     Symmetric3<double> covariance = (square + rule.sign * variance) * second;

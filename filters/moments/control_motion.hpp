@@ -8,9 +8,9 @@ namespace montecarta::filters {
 
 /// The method that propagates the noise of a control to the pose (option `motion`).
 enum class Motion {
-  linearised,  ///< EQUATIONS 1
-  quadrature,  ///< moved_by_quadrature()
-  unbiased     ///< moved_by_unbiased_controls()
+  linearised,  ///< by derivatives (EQUATIONS 1)
+  quadrature,  ///< by moved_by_quadrature()
+  unbiased     ///< by moved_by_unbiased_controls()
 };
 
 /// The option `motion` of a filter, with the default linearised or with one that fits the noise:

@@ -61,7 +61,7 @@ class Evidence {
   int since_logarithm_ = 0;
 };
 
-/// Takes the place of an Evidence that is not needed.
+/// Is used in the place of an Evidence that is not needed.
 template <class Real>
 struct Unweighed {
   [[gnu::always_inline]] void add(const Real&, const Real&, const Real&, const Real&) const {}

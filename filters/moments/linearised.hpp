@@ -80,7 +80,7 @@ struct Innovation {
 
   /// value' S^-1 value.
   Real squared() const { return squared(value); }
-  /// The same for another innovation with this covariance.
+  /// Returns other' S^-1 other for another innovation with the covariance S.
   Real squared(const Measurement<Real>& other) const {
     return S.adjugate_form(other.first, other.second) / S.determinant();
   }
@@ -118,7 +118,7 @@ struct Density {
 /// first, and the second minus its regression on the first. Lanes outside `use` get zero gains.
 template <class Real>
 struct Decorrelated {
-  Real per_first, per_second;  ///< 1 / variance of each
+  Real per_first, per_second;  ///< 1 / variance of each component
   Real slope;                  ///< regression of the second on the first
   Real first, second;          ///< values of the two
   Density<Real> density;

@@ -16,7 +16,7 @@ template <class Kind, class Real>
 struct SensorSight {
   Measurement<Real> predicted;  ///< angles not wrapped: only for residual()
   Column3<Real> first, second;  ///< rows of Hx; those by the landmark are the negatives of (x, y)
-  Real distance;                ///< [m]
+  Real distance;                ///< [m] distance from the sensor to the landmark
 };
 
 template <class Real>

@@ -49,7 +49,8 @@ template <class Real>
   const Real far = range + along, near = range - along;
   const Real square = across * across;
   const Real far_range = sqrt(far * far + square), near_range = sqrt(near * near + square);
-  const Real far_bearing = atan2(across, far), near_bearing = atan2(across, near);  // left, right
+  // The far point is on the left, the near one on the right.
+  const Real far_bearing = atan2(across, far), near_bearing = atan2(across, near);
   return {{0.5 * (far_range - near_range), 0.5 * (far_bearing + near_bearing)},
           {0.5 * (far_range + near_range) - range, 0.5 * (far_bearing - near_bearing)}};
 }
@@ -67,7 +68,7 @@ template <class Real>
 /// Moments of a predicted observation (EQUATIONS (3.8)), summed column by column.
 template <class Real>
 struct ObservationMoments {
-  Symmetric2<Real> covariance;                    ///< without the term in e e'
+  Symmetric2<Real> covariance;                    ///< covariance without the term in e e'
   Measurement<Real> shift{Real(0.0), Real(0.0)};  ///< e: mean minus observation of the centre
 
   [[gnu::always_inline]] void add(const ObservationPair<Real>& pair, const SigmaRule& rule) {
@@ -100,8 +101,8 @@ template <class Real>
 /// An observation predicted by the sigma points of (pose, landmark).
 template <class Real>
 struct SigmaObservation {
-  Innovation<Real> whole;     ///< gives the weight, with the landmark's covariance
-  Innovation<Real> proposal;  ///< moves the pose; has the cross-covariances
+  Innovation<Real> whole;     ///< innovation that gives the weight, with the landmark's covariance
+  Innovation<Real> proposal;  ///< innovation that moves the pose, with the cross-covariances
 };
 
 template <class Real>
@@ -154,7 +155,7 @@ struct LandmarkGain {
 template <class Real>
 struct LandmarkObservation {
   AcrossColumn<Real> column;  ///< first column of the square root
-  Measurement<Real> slope;    ///< its image
+  Measurement<Real> slope;    ///< image of that column
   Real rest;                  ///< square of the second column, which lies along the line
   Symmetric2<Real> N;         ///< covariance not explained by any column of the landmark
   Innovation<Real> innovation;

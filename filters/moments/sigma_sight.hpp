@@ -84,7 +84,7 @@ class SigmaSight {
   }
 
  private:
-  /// The observation from a pose displaced in its own frame, minus that of the centre.
+  /// Returns the observation from a pose displaced in its own frame, minus that of the centre.
   Measurement<Real> from(const Real& forward, const Real& left, const Real& turn) const {
     const Direction<Real> d = direction_of(turn);
     const Real x = way_.x - forward, y = way_.y - left;
@@ -131,7 +131,8 @@ struct SigmaPointsOf : SigmaPoints {
         .covariance = {Real(noise.first), Real(0.0), Real(noise.second)}};
     const auto [first, second] = s.add_points(in_plane(landmark.covariance), moments);
     Innovation<Real> v = s.innovation(seen, moments);
-    v.first = Column3<Real>{} - first, v.second = Column3<Real>{} - second;  // opposite to the pose
+    // The landmark moves opposite to the pose.
+    v.first = Column3<Real>{} - first, v.second = Column3<Real>{} - second;
     const auto use = matched && s.usable();
     weigh(Kind(), condition(landmark, v, use), use, matched, evidence);
     return v;

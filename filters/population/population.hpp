@@ -220,16 +220,16 @@ class MixtureInnovations {
     return S.adjugate_form(r, b) / S.determinant();
   }
 
-  std::vector<double> matched_;  ///< {detection}
+  std::vector<double> matched_;  ///< {detection} weight of the particles that match it
   std::vector<double> squared_;  ///< {detection} normalised squared innovation
-  std::vector<Sums> sums_;       ///< {task, detection}
+  std::vector<Sums> sums_;       ///< {task, detection} sums over the particles of a task
 };
 
 /// The number of particles, and how and when they are resampled (EQUATIONS 18).
 struct PopulationSettings {
   std::size_t particles = 100;
   Resampling resampling = Resampling::systematic;
-  double resample_below = 0.5;  ///< resample if ESS < this times particles
+  double resample_below = 0.5;  ///< resample if the ESS is less than this share of the particles
 };
 
 /// The options `particles`, `resampling` and `resample_below`, and then `others`, in the order of

@@ -55,7 +55,8 @@ JointEstimate ChainMoments::of(const RelativeChain& chain, const Eigen::VectorXd
   return estimate();
 }
 
-/// Completes the sums: covariance_ has sums over columns, and this sums over rows as well.
+/// Completes the sums: covariance_ already has sums over columns, and this function sums over rows
+/// as well.
 JointEstimate ChainMoments::estimate() const {
   const Eigen::Index n = 1 + 2 * (size() - vehicle_);
   const auto row_of = [&](Eigen::Index i) {

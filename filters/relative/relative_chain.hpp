@@ -25,13 +25,13 @@ struct RelativeChain {
     bool is_polar;      ///< range and bearing [m, rad]; else x and y [m]
   };
   struct ChainLandmark {
-    Point first;                 ///< its coordinates at initialisation
-    std::optional<Point> again;  ///< those of a second initialisation, until it is joined
+    Point first;                 ///< coordinates of the landmark at its initialisation
+    std::optional<Point> again;  ///< coordinates at a second initialisation, until both are joined
   };
 
   Pose start;                               ///< known pose in the map frame
   std::vector<Eigen::Index> displacements;  ///< {frame} first of the rows x, y, heading [m, m, rad]
-  std::vector<ChainLandmark> landmarks;     ///< in the order of initialisation
+  std::vector<ChainLandmark> landmarks;     ///< landmarks in the order of initialisation
 
   std::size_t newest_frame() const { return displacements.size() - 1; }
 };
@@ -93,7 +93,7 @@ class ChainMoments {
   Eigen::MatrixXd by_heading_;  ///< {row, term} Cov(component, psi); last: heading
   Eigen::MatrixXd headings_;    ///< {term, term} Cov(psi, psi), with the same last row and column
   Eigen::VectorXd places_;      ///< {2 term} means of positions, then the heading
-  Eigen::MatrixXd covariance_;  ///< terms with positions and heading
+  Eigen::MatrixXd covariance_;  ///< covariance of the terms with positions and heading
 };
 
 }  // namespace montecarta::filters

@@ -61,7 +61,7 @@ class Iteration {
   }
 
   const Eigen::VectorXd& step() const { return step_; }
-  /// P H' L^-T, with S = L L'.
+  /// Returns P H' L^-T, with S = L L'.
   Eigen::MatrixXd gain() const {
     const Eigen::MatrixXd L = S_.matrixL();
     Eigen::MatrixXd W = PH_;

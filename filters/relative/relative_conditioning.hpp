@@ -23,7 +23,7 @@ struct LinearisedPairs {
     Eigen::Matrix2d by_point;  ///< derivative by its coordinates
   };
   Eigen::VectorXd residual;  ///< {2 pairs} measured minus predicted
-  std::vector<Part> parts;   ///< newest frame first
+  std::vector<Part> parts;   ///< parts, those of the newest frame first
 };
 
 /// The pose of the vehicle in each frame (EQUATIONS (22.2)), and products with H, the derivatives
@@ -35,15 +35,16 @@ class VehicleInFrames {
   void linearise(const RelativeChain& chain, const Eigen::VectorXd& mean, std::size_t oldest);
   const Pose& in(std::size_t frame) const { return steps_[frame].pose; }
 
-  /// PH <- P H'.
+  /// Computes PH = P H'.
   void columns(const RelativeChain& chain, const Eigen::MatrixXd& P, const LinearisedPairs& pairs,
                Eigen::MatrixXd& PH) const;
-  /// H M.
+  /// Returns H M.
   Eigen::MatrixXd rows(const RelativeChain& chain, const LinearisedPairs& pairs,
                        const Eigen::Ref<const Eigen::MatrixXd>& M) const;
 
  private:
-  std::vector<LinearisedComposition> steps_;  ///< {frame} with the pose of the vehicle in it
+  /// {frame} composition with the pose of the vehicle in the frame.
+  std::vector<LinearisedComposition> steps_;
 };
 
 /// The pose of the vehicle in one frame after the other, newest first, as a Gaussian.
@@ -72,7 +73,7 @@ struct RelativeMeasurement {
 /// The result of conditioning.
 struct RelativeOutcome {
   bool is_faulty = false;  ///< if true, nothing was changed
-  double nis = 0.0;        ///< NIS for the Gaussian before
+  double nis = 0.0;        ///< NIS by the Gaussian before conditioning
   std::uint32_t dof = 0;
   double log_likelihood = 0.0;  ///< Laplace's approximation, at the last linearisation
 };

@@ -179,14 +179,14 @@ class RelativeEkfSlam final : public SlamFilter {
   Motion motion_kind_;
   std::size_t most_frames_;
   int iterations_;
-  double most_bend_;  ///< [m]
-  std::size_t lag_;   ///< [scans]
+  double most_bend_;  ///< [m] bend of the path beyond which a landmark is initialised again
+  std::size_t lag_;   ///< [scans] time until both initialisations of a landmark are joined
   MapAssociation association_;
-  MotionIncrement motion_;  ///< since the last scan
-  bool is_at_scan_ = true;  ///< true if no motion followed
+  MotionIncrement motion_;  ///< motion since the last scan
+  bool is_at_scan_ = true;  ///< true if no motion followed the last scan
   RelativeGaussian gaussian_;
-  RelativeGaussian joined_;  ///< a copy with the landmarks joined that were initialised again
-  std::size_t waited_ = 0;   ///< [scans] since the first of them
+  RelativeGaussian joined_;  ///< copy in which the landmarks that were initialised again are joined
+  std::size_t waited_ = 0;   ///< [scans] time since a landmark was initialised again
   std::vector<RelativeGaussian::Seen>
       duplicates_;                            ///< detections of landmarks to be initialised again
   std::vector<double> bends_;                 ///< {frame} RelativeGaussian::bends()

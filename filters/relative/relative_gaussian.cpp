@@ -57,8 +57,8 @@ void RelativeGaussian::move(const MotionIncrement& motion) {
   P_(0, 1) = P_(1, 0);
 }
 
-/// Dropping a frame costs half the variance of the heading before it times the length of the
-/// displacement after it.
+/// Drops the frame without landmarks that costs least. Dropping a frame costs half the variance of
+/// the heading before it times the length of the displacement after it.
 bool RelativeGaussian::drop_empty_frame() {
   std::vector<char>& is_empty = scratch_.is_empty;
   is_empty.assign(chain_.displacements.size(), true);
@@ -80,7 +80,7 @@ bool RelativeGaussian::drop_empty_frame() {
   return straightest > 0;
 }
 
-/// The displacements to and from the frame become one, in the rows of the second.
+/// Drops a frame. The displacements to and from it become one, in the rows of the second.
 void RelativeGaussian::drop_frame(std::size_t frame) {
   const Eigen::Index from = chain_.displacements[frame - 1], to = chain_.displacements[frame];
   const auto both = linearised_composition(displacement(chain_, frame - 1, mean_),
@@ -128,7 +128,8 @@ void RelativeGaussian::add_duplicate(const Seen& seen) {
   chain_.landmarks[seen.landmark].again = add_point(seen.observed);
 }
 
-/// At the newest frame, range and bearing are the coordinates and therefore exactly Gaussian.
+/// Adds a point in the newest frame. Range and bearing are its coordinates and therefore exactly
+/// Gaussian.
 ChainPoint RelativeGaussian::add_point(const RangeBearing<double>& observed) {
   const bool is_polar = is_at_newest_frame();
   const Eigen::Index row = add_rows(2);

@@ -43,7 +43,8 @@ class RelativeGaussian {
   /// Conditions on the equality of both positions of all landmarks that were initialised again.
   /// Returns false if that fails; nothing is changed then.
   [[nodiscard]] bool condition_on_equality(int iterations);
-  /// The same, after which the second coordinates are dropped or, if it failed, the first ones.
+  /// Conditions on this equality, and drops the second coordinates or, if it failed, the first
+  /// ones.
   [[nodiscard]] bool merge_duplicates(int iterations);
 
   const RelativeChain& chain() const { return chain_; }

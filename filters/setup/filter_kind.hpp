@@ -20,15 +20,16 @@ struct FilterKind {
   std::string name;       ///< name in study files
   std::string long_name;  ///< name in legends
   std::string source;     ///< paper and equation
-  /// With particles it has the option `particles` (always the first).
+  /// Data that the filter reports. If it has particles, its first option is `particles`.
   Capabilities reports = {};
-  std::vector<Parameter> options;  ///< in the order of the documentation
+  std::vector<Parameter> options;  ///< options in the order of the documentation
   /// Sensors that it supports, mounted at the pose; empty means all sensors, mounted anywhere.
   std::vector<std::string> sensors = {RangeBearingSensor::kName};
   /// True if it initialises landmarks that one detection does not fix. It then needs known
   /// association.
   bool delays_initialisation = false;
-  /// Removes from the capabilities those that it does not have with this setup; empty: it has all.
+  /// Removes from the capabilities those that the filter does not have with this setup; empty: it
+  /// has all.
   std::function<void(const FilterSetup&, Capabilities&)> restrict_reports = {};
   std::function<std::unique_ptr<SlamFilter>(const FilterSetup&)> make;
 };

@@ -38,12 +38,12 @@ Enumerator chosen(const std::string& choice, const std::vector<std::string>& cho
 /// The model that a filter has of vehicle and sensor (study file: [belief], default [scenario]).
 struct Belief {
   Vehicle vehicle = {};
-  ControlNoise control{.sigma = {0.3, 0.05}};  ///< for instance [m/s], [rad]
-  double sigma_range = 0.1;                    ///< [m]
-  double sigma_bearing = 0.02;                 ///< [rad]
-  double sigma_forward = 0.1;                  ///< [m] of a position in the frame of the sensor
-  double sigma_left = 0.1;                     ///< [m] of the same
-  Sensor sensor = {};                          ///< its components select among the four above
+  ControlNoise control{.sigma = {0.3, 0.05}};  ///< noise of the controls, for instance [m/s], [rad]
+  double sigma_range = 0.1;                    ///< [m] standard deviation of a range
+  double sigma_bearing = 0.02;                 ///< [rad] standard deviation of a bearing
+  double sigma_forward = 0.1;  ///< [m] standard deviation of a position, forward of the sensor
+  double sigma_left = 0.1;     ///< [m] standard deviation of a position, left of the sensor
+  Sensor sensor = {};          ///< its components determine which of the four above are used
 };
 
 enum class Association { known, nearest };
@@ -52,9 +52,9 @@ enum class Association { known, nearest };
 struct AssociationSettings {
   Association kind = Association::known;
   double gate = 5.991464547107979;      ///< D^2 below which a detection may match
-  double new_gate = 25.0;               ///< D^2 to all landmarks beyond which it is new
+  double new_gate = 25.0;               ///< D^2 to all landmarks beyond which a detection is new
   double log_new_density_offset = 0.0;  ///< added to log p0 of EQUATIONS 17
-  std::size_t most_landmarks = 1000;    ///< the run fails if a map has more
+  std::size_t most_landmarks = 1000;    ///< largest size of a map; the run fails if a map has more
 };
 
 /// All inputs of which a filter is made.
@@ -62,7 +62,8 @@ struct FilterSetup {
   Belief belief;
   AssociationSettings association;
   FilterOptions options;
-  std::size_t landmarks = 0;  ///< in the world; an upper bound of identities with known association
+  /// Number of landmarks in the world; bounds identities with known association.
+  std::size_t landmarks = 0;
 };
 
 }  // namespace montecarta::filters

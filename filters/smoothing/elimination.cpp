@@ -10,7 +10,7 @@
 namespace montecarta::filters {
 namespace {
 
-/// L^-1 A.
+/// Returns L^-1 A.
 template <int N>
 Eigen::Matrix<double, 2, N> whitened(const InnovationFactor& L, Eigen::Matrix<double, 2, N> A) {
   for (Eigen::Index j = 0; j < N; ++j) A.col(j) = L.whiten(A.col(j));

@@ -16,17 +16,18 @@ namespace montecarta::filters {
 
 /// The minimum of the linearised sum of squares of a graph, in the coordinates of a GraphEstimate.
 struct GraphMinimum {
-  std::vector<Pose> displacements;           ///< {pose}
-  std::vector<Eigen::Vector3d> multipliers;  ///< {pose}
-  std::vector<Point> in_frame;               ///< {landmark} [m]
+  std::vector<Pose> displacements;           ///< {pose} displacements at the minimum
+  std::vector<Eigen::Vector3d> multipliers;  ///< {pose} multipliers at the minimum
+  std::vector<Point> in_frame;               ///< {landmark} [m] positions at the minimum
   double squares = 0.0;                      ///< value of the linearised sum
 };
 
 /// Memory that all segments share, one after the other.
 struct SegmentScratch {
-  std::vector<Eigen::Index> row_of_landmark;  ///< {landmark} in the segment; 0: not yet observed
-  Eigen::MatrixXd panel;                      ///< rows of the linearised observations, transposed
-  Eigen::MatrixXd information;                ///< quadratic form of (1, pose before, landmarks)
+  /// {landmark} its row in the segment; 0: not yet observed.
+  std::vector<Eigen::Index> row_of_landmark;
+  Eigen::MatrixXd panel;        ///< rows of the linearised observations, transposed
+  Eigen::MatrixXd information;  ///< quadratic form of (1, pose before, landmarks)
 };
 
 /// Some consecutive poses, linearised and eliminated one after the other (EQUATIONS 21). A pose has
@@ -65,7 +66,7 @@ class Segment {
  private:
   /// A motion in the map frame: x = x_before + way e_heading of x_before + offset + noise.
   struct LinearMotion {
-    Eigen::Vector2d way;     ///< [m/rad]
+    Eigen::Vector2d way;     ///< [m/rad] derivative of the position by the heading before
     Eigen::Vector3d offset;  ///< mean minus estimate
   };
   /// An observation in units of the standard deviations of its innovation, given the landmarks.
@@ -74,7 +75,7 @@ class Segment {
     Eigen::Matrix2d landmark;
     Eigen::Vector2d residual;
     Matrix32 gain;
-    Eigen::Vector2d innovation;  ///< that with the landmarks at the minimum
+    Eigen::Vector2d innovation;  ///< innovation with the landmarks at the minimum
   };
 
   void start(const FactorGraph& graph, SegmentScratch& scratch);
@@ -88,8 +89,8 @@ class Segment {
   void smooth_poses(const FactorGraph& graph, const GraphEstimate& estimate,
                     Eigen::Vector3d adjoint, GraphMinimum& minimum) const;
 
-  std::size_t begin_ = 0;  ///< first pose
-  std::size_t end_ = 0;    ///< after the last pose
+  std::size_t begin_ = 0;  ///< index of the first pose
+  std::size_t end_ = 0;    ///< index after the last pose
   std::vector<std::uint32_t> landmarks_;
   std::vector<LinearMotion> motions_;
   std::vector<LinearObservation> observations_;
@@ -121,10 +122,13 @@ class Elimination {
   /// A segment and the pose before it.
   struct Link {
     Segment segment;
-    Eigen::Matrix3d covariance;  ///< given the landmarks and all measurements until its end
-    Eigen::Vector3d filtered;    ///< mean by the same, with the landmarks at the minimum
-    Eigen::Vector3d smoothed;    ///< mean by all measurements
-    Eigen::Vector3d adjoint;     ///< adjoint of the last pose of the segment
+    /// Covariance of the pose before the segment, given the landmarks and all measurements until
+    /// the end of the segment.
+    Eigen::Matrix3d covariance;
+    /// Mean of that pose by the same measurements, with the landmarks at the minimum.
+    Eigen::Vector3d filtered;
+    Eigen::Vector3d smoothed;  ///< mean of that pose by all measurements
+    Eigen::Vector3d adjoint;   ///< adjoint of the last pose of the segment
   };
 
   std::span<Link> links();
@@ -140,13 +144,13 @@ class Elimination {
                        GraphMinimum& minimum);
 
   SensorNoise noise_;
-  std::vector<Link> links_;  ///< those of this linearisation, then unused ones
-  std::size_t n_links_ = 0;  ///< number of those of this linearisation
+  std::vector<Link> links_;  ///< links of this linearisation, then unused ones
+  std::size_t n_links_ = 0;  ///< number of links of this linearisation
   SegmentScratch scratch_;
   Eigen::Index rows_ = 0;         ///< number of rows of the landmarks so far, in packs
   Eigen::Index height_ = 0;       ///< number of rows of all landmarks, in packs
   Segment::Rows given_;           ///< form of the last pose so far: row 0 is g, from row 2 on G'
-  Eigen::Matrix3d covariance_;    ///< C of the same
+  Eigen::Matrix3d covariance_;    ///< C: covariance of the last pose so far
   Segment::Rows gradient_;        ///< half the gradient by the last pose, with rows like given_
   Eigen::MatrixXd information_;   ///< quadratic form of (1, 0, l); lower triangle
   Eigen::MatrixXd left_, right_;  ///< columns; their products are not yet in information_

@@ -44,28 +44,29 @@ class FactorGraph {
 
  private:
   Pose start_;
-  std::vector<MotionIncrement> motions_;   ///< {pose}
-  std::vector<std::size_t> begin_;         ///< {pose} and one more
-  std::vector<Observation> observations_;  ///< those of all poses, in order
-  std::vector<std::size_t> first_pose_;    ///< {landmark}
+  std::vector<MotionIncrement> motions_;   ///< {pose} motion from the pose before
+  std::vector<std::size_t> begin_;         ///< {pose} index of its first observation, and one more
+  std::vector<Observation> observations_;  ///< observations of all poses, in order
+  std::vector<std::size_t> first_pose_;    ///< {landmark} pose that observed it first
 };
 
 /// An estimate of all poses and landmarks in relative coordinates: displacements from pose to pose,
 /// and landmarks in the frame of the pose that observed them first. A step in these moves all later
 /// poses rigidly, whereas a step in the map frame breaks the path where a loop closes.
 struct GraphEstimate {
-  std::vector<Pose> displacements;  ///< {pose} in the frame of the pose before
-  std::vector<Point> in_frame;      ///< {landmark} in the frame of its first pose [m]
+  std::vector<Pose> displacements;  ///< {pose} displacement in the frame of the pose before
+  std::vector<Point> in_frame;      ///< {landmark} [m] position in the frame of its first pose
   /// {pose} m of displacement = mean + covariance m, for all but the newest poses. The Gauss-Newton
   /// step computes it without the inverse of a covariance.
   std::vector<Eigen::Vector3d> multipliers;
-  std::vector<Pose> poses;  ///< {pose} in the map frame
+  std::vector<Pose> poses;  ///< {pose} pose in the map frame
   /// {pose} direction of the heading of the pose before.
   std::vector<Direction<double>> directions;
-  std::vector<Point> landmarks;  ///< {landmark} in the map frame [m]
+  std::vector<Point> landmarks;  ///< {landmark} [m] position in the map frame
 
   void clear();
-  /// Add the newest pose, and a landmark that it observed first, given in the map frame.
+  /// These functions add the newest pose, and a landmark that it observed first, given in the map
+  /// frame.
   void add_pose(const FactorGraph& graph, const Pose& pose);
   void add_landmark(const Point& landmark);
   /// Computes poses and landmarks in the map frame from the relative coordinates.

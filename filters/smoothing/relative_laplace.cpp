@@ -71,7 +71,8 @@ Eigen::MatrixXd PosesGivenMap::covariance(const Elimination& elimination,
   Eigen::MatrixXd G(n, poses);  // derivatives by the landmarks, transposed
   Rows by_landmarks = Rows::Zero(n, 3);
   Eigen::Matrix3d own = Eigen::Matrix3d::Zero();
-  Eigen::Matrix<double, 3, Eigen::Dynamic> with_chosen(3, poses);  // covariance with those so far
+  // Covariance of the last pose of segment i with the chosen poses so far.
+  Eigen::Matrix<double, 3, Eigen::Dynamic> with_chosen(3, poses);
   Eigen::Index row = 0;
   for (std::size_t i = 0, next = 0; next < chosen.size(); ++i) {
     const LaplaceStep& step = steps_[i];

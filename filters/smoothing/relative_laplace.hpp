@@ -31,12 +31,12 @@ class PosesGivenMap {
   struct LaplaceStep {
     Eigen::Matrix3d transition;
     Eigen::Matrix3d covariance;
-    Rows by_landmarks;  ///< {row of l, 3}
+    Rows by_landmarks;  ///< {row of l, 3} derivatives by the landmarks
   };
 
   void step_backwards(const Elimination& elimination, Eigen::Index rows);
 
-  std::vector<LaplaceStep> steps_;  ///< {segment}
+  std::vector<LaplaceStep> steps_;  ///< {segment} step to the last pose of the segment
   MapMoments map_;
 };
 
@@ -62,7 +62,7 @@ class RelativeLaplace {
   std::vector<std::size_t> frames_;  ///< poses of the frames
   std::size_t newest_ = 0;           ///< index of the newest pose
   RelativeChain chain_;
-  std::vector<RelativeChain::Point> points_;  ///< {landmark}
+  std::vector<RelativeChain::Point> points_;  ///< {landmark} coordinates of the landmark
   Eigen::VectorXd mean_;
   std::vector<Eigen::Triplet<double>> by_map_;  ///< derivatives of the coordinates by poses and map
   PosesGivenMap poses_given_map_;

@@ -181,8 +181,9 @@ class Smoother final : public SlamFilter {
     }
   }
 
-  /// Landmarks in view converge by themselves and may wait; others move when a loop closes. Far
-  /// ones (CompressedGaussian) move with those near the vehicle and are not tested.
+  /// Returns whether a landmark has moved so far that the graph must be solved again. Landmarks in
+  /// view converge by themselves and may wait; others move when a loop closes. Far ones
+  /// (CompressedGaussian) move with those near the vehicle and are not tested.
   bool is_due() const {
     const bool may_wait = static_cast<double>(graph_.poses() - solved_poses_) <
                           kSpacing * static_cast<double>(graph_.poses());
@@ -228,13 +229,14 @@ class Smoother final : public SlamFilter {
   Moments moments_;
   double share_;  ///< standard deviations that a landmark may move before a new solution
   JointBelief belief_;
-  MotionIncrement motion_;  ///< since the last scan
+  MotionIncrement motion_;  ///< motion since the last scan
   FactorGraph graph_;
   GraphEstimate estimate_;
   GaussNewton solver_;
-  std::vector<Eigen::Vector2d> linearised_at_;  ///< {landmark} [m]
-  std::size_t solved_poses_ = 0;                ///< number of poses at the last solution
-  MapMoments map_;                              ///< scratch
+  /// {landmark} [m] position at the last solution or at a later initialisation.
+  std::vector<Eigen::Vector2d> linearised_at_;
+  std::size_t solved_poses_ = 0;  ///< number of poses at the last solution
+  MapMoments map_;                ///< scratch
   ScanReport report_;
 };
 

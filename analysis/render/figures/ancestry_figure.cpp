@@ -68,19 +68,20 @@ class BranchTracer {
   std::vector<DrawnLine> alive_;
   /// {particle} number of followed children; zero between steps.
   std::vector<std::uint32_t> child_count_;
-  std::vector<std::size_t> open_;  ///< {particle} branch that forks at the particle
+  /// {particle} branch that forks at the particle; kNoBranch if none does.
+  std::vector<std::size_t> open_;
 };
 
 /// Sets the heights of the lines: small families are below large ones, and parents half way between
 /// their first and last child.
 void set_heights(AncestryTree& tree) {
   std::vector<Branch>& branches = tree.branches;
-  // The last one is that of the start.
+  // The last element holds the branches that begin at the start of the run.
   std::vector<std::vector<std::size_t>> children(branches.size() + 1);
   for (std::size_t b = 0; b < branches.size(); ++b) {
     children[std::min(branches[b].parent, branches.size())].push_back(b);
   }
-  std::vector<double> below(branches.size() + 1, 0.0);  // number of leaves below a branch's own
+  std::vector<double> below(branches.size() + 1, 0.0);  // {branch} number of leaves drawn below it
   for (std::size_t b = branches.size() + 1; b-- > 0;) {
     std::ranges::stable_sort(children[b], {}, [&](std::size_t c) { return branches[c].leaves; });
     double next = below[b];
@@ -120,7 +121,7 @@ namespace {
 
 constexpr std::size_t kMostTrees = 8, kMostLeaves = 100;
 
-/// A cell whose tree is drawn.
+/// A cell with the tree that is drawn for it.
 struct DrawnTree {
   std::string label;
   std::size_t style = 0;
@@ -143,7 +144,8 @@ std::vector<DrawnTree> drawn_trees(const ResultFile& file, std::size_t run) {
   return drawn;
 }
 
-/// A file with a row for every branch. A line that begins at the start has its own height there.
+/// Makes a file with a row for every branch. A line that begins at the start has its own height
+/// there.
 FigureData data_of(const DrawnTree& cell) {
   FigureData data{"ancestry_" + cell.label + ".csv"};
   for (const AncestryTree::Branch& branch : cell.tree.branches) {
@@ -200,7 +202,7 @@ ChartPanel chart_panel(const DrawnTree& cell, const Frame& data) {
   return panel;
 }
 
-/// The time at which the second panel of a row begins: shortly before the youngest common ancestor.
+/// Time [s] at which the second panel of a row begins: shortly before the youngest common ancestor.
 double begin_of_resolved(const DrawnTree& cell) {
   const double since = cell.tree.common_ancestor();
   return std::max(0.0, since - 0.08 * (cell.end - since));

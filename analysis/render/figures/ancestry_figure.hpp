@@ -18,7 +18,7 @@ namespace montecarta::analysis {
 struct AncestryTree {
   static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
-  /// A line without a fork.
+  /// A line of descent between two forks.
   struct Branch {
     /// Index of the parent branch; kNone if it begins where the run begins.
     std::size_t parent = kNone;
@@ -27,7 +27,7 @@ struct AncestryTree {
     std::size_t leaves = 0;  ///< number of its descendants at the end of the run
     double height = 0.0;     ///< vertical position: leaves at 1, 2, ..., so that no lines cross
   };
-  std::vector<Branch> branches;  ///< children before their parents
+  std::vector<Branch> branches;  ///< branches, in which children come before their parents
   std::size_t leaves = 0;        ///< number of lines that are followed back
   /// Number of particles of the cell: more than `leaves` if there are too many.
   std::size_t particles = 0;

@@ -18,9 +18,9 @@
 namespace montecarta::analysis {
 namespace {
 
-// Sizes in px.
+// All sizes are in pixels.
 constexpr double kCharacter = 7.8;  // width of most characters, in either font
-// Room beside a panel for numbers and label.
+// Room beside a panel for the numbers and the label of its axis.
 constexpr double kAxisRoom = 76.0, kNarrowAxisRoom = 48.0;
 constexpr double kRightRoom = 14.0, kHeading = 26.0, kTicks = 54.0, kGap = 18.0;
 constexpr std::size_t kMostColumns = 3;
@@ -29,7 +29,7 @@ constexpr std::size_t kStripKeyHeight = 42;
 
 bool has_strips(const Chart& chart) { return !chart.panels.front().strips.rows.empty(); }
 
-/// Room left and right of a panel; names and notes of strips have the room that they need.
+/// Room left and right of a panel. Strips have as much room as their names and notes need.
 std::array<double, 2> side_rooms(const Chart& chart, bool headings) {
   if (!has_strips(chart)) return {headings ? kNarrowAxisRoom : kAxisRoom, kRightRoom};
   std::size_t name = 0, note = 0;
@@ -52,8 +52,8 @@ double panel_height(const Chart& chart, double panel_width) {
   return chart.panels.size() == 1 ? kSingleHeight : kUsualHeight;
 }
 
-/// Returns whether labels stand above their panels, also if one is too long to stand beside its
-/// axis.
+/// Returns whether labels stand above their panels. They also do so if one is too long to stand
+/// beside its axis.
 bool has_headings(const Chart& chart, std::size_t columns) {
   if (columns > 1 || !chart.panels.front().cell.empty() || has_strips(chart)) return true;
   return chart.aspect == 0.0 && std::ranges::any_of(chart.panels, [&](const ChartPanel& panel) {
@@ -190,8 +190,8 @@ std::string mark_style(const ChartMarks& marks) {
   return "";
 }
 
-/// Data and plot commands of a panel's bands, curves and marks, one above the other, each with a
-/// data block of its own.
+/// Writes the data and the plot commands of a panel's bands, curves and marks, in the order in
+/// which they cover each other. Each has a data block of its own.
 class PanelWriter {
  public:
   PanelWriter(const Chart& chart, std::size_t panel)
@@ -203,7 +203,7 @@ class PanelWriter {
   }
 
   const std::string& numbers() const { return numbers_; }  ///< text of the data blocks
-  /// Text that follows "plot".
+  /// Text that follows gnuplot's command "plot".
   std::string commands() const { return commands_.empty() ? "NaN notitle" : commands_; }
 
  private:
@@ -281,8 +281,8 @@ std::string range(const char* axis, double from, double to) {
          "]\n";
 }
 
-/// Commands for the horizontal axis of a panel. The label common to all columns is below the
-/// drawing (common_label()).
+/// Commands for the horizontal axis of a panel. If all columns have one label, common_label() puts
+/// it below the drawing.
 std::string horizontal_axis(const Chart& chart, const PanelBox& box) {
   const std::string label = box.is_alone_in_row
                                 ? "set xlabel " + gnuplot_quoted(chart.x_label) + " offset 0,0.4\n"
@@ -297,7 +297,8 @@ std::string common_label(const Chart& chart, const PrintLayout& layout) {
          readable(10.0 / layout.height, 4) + " center\n";
 }
 
-/// Upper end of the vertical axis: that of curves and bands, unless the axis gives one.
+/// Upper end of the vertical axis: the limit of the axis if it has one, else a little above all
+/// curves and bands.
 double upper_end(const ChartPanel& panel) {
   if (!std::isnan(panel.axis.high)) return panel.axis.high;
   double greatest = panel.axis.low;
@@ -320,7 +321,7 @@ std::string linear_ticks(double from, double to, double pixels) {
   return "set ytics nomirror " + command_number(step) + "\n";
 }
 
-/// Commands for names left and notes right of the rows of strips.
+/// Commands for the names left and the notes right of the rows of strips.
 std::string strip_axis(const ChartPanel& panel) {
   std::string names, notes;
   const auto note = [&](const std::string& text, const std::string& at) {
@@ -407,7 +408,7 @@ std::string legend_plot(const std::vector<LegendEntry>& entries, std::size_t col
   return script + "NaN notitle\n";
 }
 
-/// The drawing in pixels from its upper left corner.
+/// Makes commands that place objects in pixels from the upper left corner of the drawing.
 class Sheet {
  public:
   Sheet(double width, double height) : width_(width), height_(height) {}
@@ -456,7 +457,7 @@ std::string strip_key(const ChartStrips& strips, const PanelBox& box, double wid
 }  // namespace
 
 GnuplotChart gnuplot_chart(const Chart& chart, std::size_t width) {
-  constexpr std::size_t kLegendRow = 23;  // [px]
+  constexpr std::size_t kLegendRow = 23;  // [px] height of a row of the legend
   const std::vector<LegendEntry> legend = legend_of(chart);
   const std::size_t columns = legend.empty() ? 1 : legend_columns(legend, width);
   const std::size_t legend_height =
@@ -498,8 +499,8 @@ set datafile columnheaders
 set key noenhanced samplen 1.6 width 1
 )";
 
-/// The whole script. It draws the figure for the page and for print, with as much room for a row of
-/// the legend in both.
+/// Makes the whole script. It draws the figure for the page and for print, with as much room for a
+/// row of the legend in both.
 std::string script_of(const Figure& figure) {
   const GnuplotChart drawn = gnuplot_chart(figure.chart, figure.width);
   const std::string size = std::to_string(figure.width) + "," + std::to_string(drawn.height);

@@ -13,10 +13,10 @@ namespace montecarta::analysis {
 /// Position of a panel in a printed chart [px], from the upper left corner.
 struct PanelBox {
   double left = 0.0, right = 0.0, top = 0.0, bottom = 0.0;
-  /// Whether it is the lowest of its column and has the numbers of the horizontal axis.
+  /// Whether the panel is the lowest of its column and has the numbers of the horizontal axis.
   bool is_lowest = true;
   bool is_alone_in_row = true;
-  bool has_heading = true;  ///< whether its label stands above it, else beside its axis
+  bool has_heading = true;  ///< whether the label is above the panel, not beside it
   double x_from = 0.0, x_to = 0.0;
 };
 
@@ -41,12 +41,12 @@ std::string gnuplot_quoted(const std::string& text);
 
 /// A chart as gnuplot draws it.
 struct GnuplotChart {
-  std::string numbers;     ///< data blocks, once for all terminals
-  std::string commands;    ///< commands that follow terminal and style
-  std::size_t height = 0;  ///< [px]
+  std::string numbers;     ///< text of the data blocks, which all terminals share
+  std::string commands;    ///< commands that follow those for terminal and style
+  std::size_t height = 0;  ///< [px] height of the drawing
 };
 
-/// The commands for a chart of `width` [px].
+/// Makes the commands for a chart of `width` [px].
 GnuplotChart gnuplot_chart(const Chart& chart, std::size_t width);
 
 /// Writes figures/<name>.gp and data/ below `directory`, and draws figures/<name>.svg and .pdf, all

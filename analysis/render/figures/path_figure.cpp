@@ -80,7 +80,7 @@ Bounds bounds_of_fixes(const Frame& fixes) {
 }  // namespace
 
 void Bounds::include(double x, double y) {
-  constexpr double kBeyondAnyMap = 1e100;  // [m]
+  constexpr double kBeyondAnyMap = 1e100;  // [m] farther points are ignored
   if (!(std::abs(x) < kBeyondAnyMap && std::abs(y) < kBeyondAnyMap)) return;
   left = std::min(left, x);
   right = std::max(right, x);
@@ -134,7 +134,7 @@ Bounds recorded_bounds(const std::vector<DrawnPath>& cells, const FigureData& fi
   return bounds.widened();
 }
 
-/// {run} Number of cells in which the run is complete.
+/// Returns {run} the number of cells in which the run is complete.
 std::vector<std::size_t> completeness(const ResultFile& file) {
   std::vector<std::size_t> cells(file.runs().size());
   for (const StoredCell& cell : file.cells()) {
@@ -147,7 +147,8 @@ std::vector<std::size_t> completeness(const ResultFile& file) {
 }
 
 constexpr std::size_t kMostPoints = 500;
-constexpr std::size_t kMostRecorded = 1500;  // a recorded drive is kilometres long
+// More points for a recorded drive, which is kilometres long.
+constexpr std::size_t kMostRecorded = 1500;
 constexpr std::size_t kMostFixes = 600;
 constexpr std::size_t kPoseEllipses = 16;  // number of ellipses along a path
 

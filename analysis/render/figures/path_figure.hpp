@@ -17,7 +17,7 @@ namespace montecarta::analysis {
 /// An ellipse as gnuplot draws it.
 struct Ellipse {
   double x = 0.0;      ///< [m] centre
-  double y = 0.0;      ///< [m]
+  double y = 0.0;      ///< [m] centre
   double major = 0.0;  ///< [m] diameter
   double minor = 0.0;  ///< [m] diameter
   double angle = 0.0;  ///< [deg] angle of the major axis
@@ -27,8 +27,7 @@ struct Ellipse {
 /// if that has a negative eigenvalue, a diameter is NaN, and the ellipse is not drawn.
 Ellipse two_sigma_ellipse(double x, double y, double xx, double xy, double yy);
 
-/// The map of one cell in one run, as far as the file holds it: that of every scan, or the final
-/// one.
+/// The map of one cell in one run: at every scan if the file holds that, else the final map.
 class StoredMap {
  public:
   StoredMap(const ResultFile& file, const StoredCell& cell, std::size_t run);
@@ -74,8 +73,8 @@ struct Bounds {
 /// if the file does not hold `run`.
 std::optional<std::size_t> chosen_run(const ResultFile& file, std::optional<std::uint64_t> run);
 
-/// Rows (time, x, y) of at most some hundred fixes of the leading reference; none if there is no
-/// reference.
+/// Returns rows (time, x, y) of at most some hundred fixes of the leading reference; none if there
+/// is no reference.
 FigureData fix_data(const ResultFile& file, std::size_t run_index);
 /// Data files of one cell; files without rows are left out.
 struct DrawnPath {
@@ -84,14 +83,16 @@ struct DrawnPath {
   FigureData path, poses, map;
 };
 
-/// A chart with a map for each cell; all show the true landmarks and the fixes of the reference.
+/// Makes a chart with a map for each cell. All maps show the true landmarks and the fixes of the
+/// reference.
 Chart path_chart(const std::vector<DrawnPath>& cells, const FigureData& landmarks,
                  const FigureData& fixes, const Bounds& bounds);
 
-/// The true and the estimated path of one run, with a panel for each cell: landmarks (estimated
-/// ones if the map is stored) and ellipses of two standard deviations; for a recorded drive, the
-/// fixes of the leading reference instead of the truth. The run is that of chosen_run(). There are
-/// no data if no cell is complete. Throws StudyError if the file does not hold `run`.
+/// Makes a figure of the true and the estimated path of one run, with a panel for each cell:
+/// landmarks (estimated ones if the map is stored) and ellipses of two standard deviations; for a
+/// recorded drive, the fixes of the leading reference instead of the truth. The run is that of
+/// chosen_run(). There are no data if no cell is complete. Throws StudyError if the file does not
+/// hold `run`.
 Figure path_figure(const ResultFile& file, std::optional<std::uint64_t> run);
 
 }  // namespace montecarta::analysis

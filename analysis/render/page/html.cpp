@@ -12,7 +12,7 @@
 namespace montecarta::analysis {
 namespace {
 
-/// Adds values unless they are empty, since a page has many panels.
+/// Adds values under their name. Leaves them out if they are empty, because a page has many panels.
 template <class Values>
 void add_if_any(const char* name, const Values& values, Json& json) {
   if (values.empty()) return;

@@ -98,7 +98,7 @@ std::vector<std::string> notes_of(const Section& section) {
   return notes;
 }
 
-/// Heading of a folded section: "Is it so? Hardly.", "Map: landmark RMSE 0.1 m".
+/// HTML of the heading of a folded section: "Is it so? Hardly.", "Map: landmark RMSE 0.1 m".
 std::string folded_heading(const Section& section) {
   const std::string colon = section.title.ends_with('?') || section.summary.empty() ? "" : ":";
   return "<h2>" + html_escape(section.title) + colon + "</h2> <span class=\"says\">" +
@@ -118,7 +118,7 @@ std::string html_of(const Section& section, const fs::path& directory) {
          body + "</details>\n</section>\n";
 }
 
-/// The most rows of a table on the page, since a study may fail a thousand times.
+/// Largest number of rows of a table on the page, since a study may fail a thousand times.
 constexpr std::size_t kMostTableRows = 60;
 
 std::string markdown_escape(const std::string& text) {
@@ -136,7 +136,7 @@ std::string markdown_row(const std::vector<std::string>& texts) {
   return row + "\n";
 }
 
-/// The value of a key, "unknown" if there is none.
+/// Returns the value of a key; "unknown" if there is none.
 std::string value_of(const TextPairs& pairs, std::string_view key) {
   const auto found = std::ranges::find(pairs, key, [](const auto& pair) { return pair.first; });
   return found == pairs.end() ? "unknown" : found->second;

@@ -14,7 +14,7 @@
 
 namespace montecarta::analysis {
 
-// Parts of a report that belong to no metric.
+// These functions make the parts of a report that belong to no metric.
 
 /// A sentence on the subject of the study, for a reader who knows nothing about it.
 std::string studied_sentence(const StudyAnalysis& study);

@@ -31,7 +31,7 @@ const NeesSeries* judged_series(const CellAnalysis& cell) {
   return pose == nullptr || !pose->is_tested() ? nullptr : &pose->series;
 }
 
-/// The upper end of the axis, one for all cards, as a power of ten.
+/// Returns the power of ten at the upper end of the axis, which all cards share.
 int highest_decade(const StudyAnalysis& study) {
   int highest = kUsualDecade;
   for (const CellAnalysis& cell : study.cells) {
@@ -45,7 +45,7 @@ int highest_decade(const StudyAnalysis& study) {
   return highest;
 }
 
-/// NEES by its dimension over time, on a logarithmic axis.
+/// A curve over time, on a logarithmic axis, of the NEES divided by its dimension.
 struct Sparkline {
   int highest;      ///< power of ten at the upper end
   double duration;  ///< [s] time at the right end
@@ -91,8 +91,8 @@ struct Sparkline {
            pixels(y(bounds.lower / dimension) - top) + "\"/>";
   }
 
-  /// Bars below the eighths of the drive in which a deviation is shown; if there are none, below
-  /// the scans in which one is shown.
+  /// Draws bars below the eighths of the drive in which a deviation is shown; if there are none,
+  /// below the scans in which one is shown.
   std::string bars(const Verdict& verdict) const {
     for (const Family family : {Family::stretch, Family::scan}) {
       const FamilyTest* test = verdict.find(family);
@@ -102,7 +102,8 @@ struct Sparkline {
     return "";
   }
 
-  /// Adds the first and the last time if they are not those of the drive.
+  /// Draws bars for one family, with the first and the last time unless these are the ends of the
+  /// drive.
   std::string bars_of(const FamilyTest& test) const {
     constexpr double kLeastWidth = 2.0;
     const bool is_scan = test.family == Family::scan;

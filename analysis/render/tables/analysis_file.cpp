@@ -20,7 +20,7 @@ void write_row(const h5::Handle& group, const Frame::Row& row) {
   }
 }
 
-/// Writes columns, with the scale of their rows if they have one.
+/// Writes columns, and attaches the scale of their rows if there is one.
 void write_columns(const h5::Handle& group, const std::vector<Frame::Column>& columns,
                    const h5::Handle* scale) {
   for (const Frame::Column& column : columns) {
@@ -32,7 +32,7 @@ void write_columns(const h5::Handle& group, const std::vector<Frame::Column>& co
   }
 }
 
-/// Scales of the series of a cell.
+/// Dimension scales for the series of a cell.
 struct Times {
   h5::Handle scans;
   std::vector<h5::Handle> fixes;  ///< {reference} scale of its fixes
@@ -103,7 +103,8 @@ void write_cell(const h5::Handle& cells, const StudyAnalysis& study, const CellA
 
 }  // namespace
 
-// HDF5 1.10 crashes at exit when a disk is full, so it writes to memory and never to a disk.
+// HDF5 1.10 crashes at exit when a disk is full, so it makes the file in memory and never writes to
+// a disk.
 void write_analysis_file(const StudyAnalysis& study, const std::filesystem::path& path) {
   const auto file = h5::create_image(path.string());
   h5::put_text(file, "filetype", "montecarta-analysis");
@@ -115,7 +116,7 @@ void write_analysis_file(const StudyAnalysis& study, const std::filesystem::path
     Times times{write_times(file, "time", study.times), {}};
     for (const JudgedReference& reference : study.references) {
       if (reference.times.empty()) {
-        times.fixes.emplace_back(-1);  // a scale has a length
+        times.fixes.emplace_back(-1);  // a reference without times has no scale
         continue;
       }
       times.fixes.push_back(write_times(file, "fix_" + reference.name, reference.times));

@@ -7,8 +7,9 @@
 
 namespace montecarta::analysis {
 
-/// Writes everything as HDF5: one group for each cell below /cells, series over the scale `time`.
-/// Replaces `path` when all is written. Throws RunError if that fails, and leaves the old file.
+/// Writes all results of the analysis as HDF5: one group for each cell below /cells, with series
+/// over the scale `time`. Replaces `path` when all is written. Throws RunError if that fails, and
+/// leaves the old file.
 void write_analysis_file(const StudyAnalysis& study, const std::filesystem::path& path);
 
 }  // namespace montecarta::analysis

@@ -16,7 +16,7 @@ std::string latex_escape(const std::string& text);
 /// A tabular in booktabs style, without float or caption.
 std::string latex_tabular(const TextTable& table);
 
-/// The same below a comment with the name of its study.
+/// The tabular of latex_tabular() below a comment that names the study.
 std::string latex_table(const StudyAnalysis& study, const TextTable& table);
 
 /// Writes failures.csv, cells.csv (one row for each cell), consistency.csv (one row for each cell
@@ -26,7 +26,7 @@ std::string latex_table(const StudyAnalysis& study, const TextTable& table);
 /// cannot be written.
 void write_csv(const StudyAnalysis& study, const std::filesystem::path& directory);
 
-/// Names of the files that write_csv() makes of cells with these labels.
+/// Names of the files that write_csv() makes if the cells have these labels.
 std::vector<std::string> csv_names(const std::vector<std::string>& labels);
 
 }  // namespace montecarta::analysis

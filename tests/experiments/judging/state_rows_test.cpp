@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/numbers/angle.hpp"
-#include "experiments/judging/run_files.hpp"
 #include "experiments/judging/innovation_rows.hpp"
+#include "experiments/judging/run_files.hpp"
 #include "experiments/judging/truth_at.hpp"
 #include "tests/doubles/complaint.hpp"
 #include "tests/doubles/matchers.hpp"

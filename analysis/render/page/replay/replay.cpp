@@ -21,7 +21,7 @@ namespace {
 
 using Scans = std::vector<std::size_t>;
 
-/// {frame} Scans at equal distances, the last one included; at most `most`.
+/// Returns {frame} at most `most` scans at equal distances, including the last one.
 Scans frame_scans(std::size_t scans, std::size_t most) {
   const std::size_t stride = (scans + most - 1) / std::max<std::size_t>(most, 1);
   Scans frames;
@@ -81,7 +81,7 @@ void read_nees(const RunRows& rows, const StoredCell& cell, std::span<const doub
   replay.nees_band = {band.lower / dimension, band.upper / dimension};
 }
 
-/// The reason why a run failed; empty if it is complete.
+/// Returns the reason why a run failed; empty if it is complete.
 std::string failure_of(const ResultFile& file, const StoredCell& cell, std::size_t run) {
   if (file.status(cell)[run] != RunStatus::failed) return "";
   return "failed at step " + std::to_string(file.failure_steps(cell)[run]) + ": " +
@@ -109,7 +109,7 @@ void add_cell(const ResultFile& file, std::size_t index, std::size_t run, const 
   whole.cells.push_back(std::move(replay));
 }
 
-/// The share of one cell in the total of all cells.
+/// Divides the limits for a whole replay by its number of cells.
 ReplaySize share_of(const ReplaySize& size, std::size_t cells, std::size_t frames) {
   ReplaySize share = size;
   share.particles =
@@ -349,7 +349,8 @@ std::string which_run(const ResultFile& file, const Replay& replay) {
          prose("replay", "full runs", {{"runs", std::to_string(file.description().full_runs)}});
 }
 
-/// Text of the columns to record to see more; empty if all are there, and for imported estimates.
+/// Text of the columns that a user must record to see more; empty if all are there, and for
+/// imported estimates.
 std::string wanted(const ResultFile& file, std::size_t run) {
   if (file.cells().front().has("error")) return "";
   const auto lacks = [&](const char* column, bool of_particles) {

@@ -23,7 +23,7 @@ struct ReplayParticles {
     /// {particle shown} index of its parent in `shown` of the frame before; empty if no ancestry is
     /// stored, and in the first frame.
     std::vector<std::uint32_t> parent;
-    std::vector<double> x, y;  ///< [m]
+    std::vector<double> x, y;  ///< [m] {particle shown} position
     /// Weight divided by the largest of the frame; empty if not stored.
     std::vector<double> weight;
   };
@@ -49,7 +49,7 @@ struct ReplayCell {
   std::string label;
   std::size_t style = 0;     ///< style index for line_colour()
   std::string failure = {};  ///< reason why the run failed; empty if it is complete
-  std::vector<double> x = {}, y = {}, h = {};  ///< [m], [rad] estimate
+  std::vector<double> x = {}, y = {}, h = {};  ///< [m], [rad] estimated pose
   std::vector<Ellipse> pose = {};  ///< ellipses that hold kReplayShare; empty if not stored
   std::vector<double> nees = {};   ///< NEES ratio of the leading moments; empty if not known
   Interval nees_band = {};         ///< band that holds kReplayShare of a consistent filter's ratios
@@ -61,7 +61,7 @@ struct ReplayCell {
 /// One run, thinned to be replayed on a page.
 struct Replay {
   std::uint64_t run = 0;                                  ///< number of the run in the study
-  std::vector<double> times = {};                         ///< [s] {frame}
+  std::vector<double> times = {};                         ///< [s] {frame} time of each frame
   std::vector<double> x = {}, y = {}, h = {};             ///< [m], [rad] truth; empty if unknown
   std::vector<std::pair<double, double>> landmarks = {};  ///< [m] true positions
   /// [m] positions of the reference of a recorded drive.
@@ -72,10 +72,12 @@ struct Replay {
 
 /// The stored data of a cell's particles in one run.
 struct StoredParticles {
-  std::size_t count = 0;                    ///< number of particles
-  std::span<const double> pose;             ///< {scan, particle, 3}
-  std::span<const std::uint32_t> ancestor;  ///< {scan, particle}; empty if not stored
-  std::span<const double> log_weight = {};  ///< {scan, particle}; empty if not stored
+  std::size_t count = 0;         ///< number of particles
+  std::span<const double> pose;  ///< {scan, particle, 3} [m, m, rad] poses
+  /// {scan, particle} indices of the parents; empty if not stored.
+  std::span<const std::uint32_t> ancestor;
+  /// {scan, particle} logarithms of the weights; empty if not stored.
+  std::span<const double> log_weight = {};
 };
 
 /// Chooses at most `most` particles for each frame; `scans`, increasing, are those of the frames.
@@ -86,10 +88,12 @@ ReplayParticles thin_particles(const StoredParticles& stored, std::span<const st
 
 /// Limits on the size of a replay, so that a page has some hundred thousand bytes over all cells.
 struct ReplaySize {
-  std::size_t frames = 300;        ///< most frames
-  std::size_t particles = 100;     ///< most particles of a cell in a frame
-  std::size_t positions = 24'000;  ///< most positions of particles, over all cells and frames
-  std::size_t ellipses = 60'000;   ///< most ellipses of landmarks, over all cells and frames
+  std::size_t frames = 300;     ///< largest number of frames
+  std::size_t particles = 100;  ///< largest number of particles of a cell in a frame
+  /// Largest number of positions of particles, over all cells and frames.
+  std::size_t positions = 24'000;
+  /// Largest number of ellipses of landmarks, over all cells and frames.
+  std::size_t ellipses = 60'000;
 };
 
 /// Reads run index `run` of every cell that completed it or failed in it, with frames at equal

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The last moment of a replay as a drawing: what page/script/panel.js shows of each cell.
+// Draws the last moment of a replay as page/script/panel.js shows it for each cell.
 #include "analysis/render/page/replay/replay_still.hpp"
 
 #include "analysis/render/page/html.hpp"
@@ -15,7 +15,7 @@ namespace montecarta::analysis {
 namespace {
 
 constexpr std::size_t kMostDrawnCells = 4;
-constexpr double kPanelWidth = 380.0, kSpace = 24.0, kHead = 30.0, kLower = 130.0;  // [px]
+constexpr double kPanelWidth = 380.0, kSpace = 24.0, kHead = 30.0, kLower = 130.0;  // sizes in px
 constexpr double kLeastNees = 0.1, kMostNees = 1e6;
 
 /// A rectangle of the drawing [px].
@@ -80,8 +80,8 @@ struct View {
   }
 };
 
-/// Bounds of the drive; those of the estimates only if nothing else is known, since a filter may be
-/// lost.
+/// Returns bounds of the drive. Those of the estimates are used only if nothing else is known,
+/// because a filter may be lost.
 Bounds bounds_of(const Replay& replay) {
   Bounds bounds;
   for (std::size_t f = 0; f < replay.x.size(); ++f) bounds.include(replay.x[f], replay.y[f]);
