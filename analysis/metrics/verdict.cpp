@@ -46,6 +46,7 @@ class VerdictOverRuns final : public MergedSums<VerdictOverRuns> {
     const NeesSeries& series = cell.nees.front().series;
     cell.verdict.samples = series.samples;
     cell.verdict.unusable = series.unusable;
+    cell.verdict.missing = series.missing;
   }
   static constexpr auto parts() { return std::tuple(added(&VerdictOverRuns::sums_)); }
 

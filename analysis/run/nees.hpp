@@ -60,16 +60,16 @@ inline constexpr double kLargestNees = 1e60;
 
 /// Normalised estimation error squared of one sample (STATISTICS 2).
 struct Nees {
-  static constexpr int kUnusable = -1;
+  static constexpr int kUnusable = -1, kMissing = -2;
 
   /// e' P^-1 e in the range of P, without components that are known exactly; NaN if the sample is
   /// unusable or the rank is 0.
   double value;
   /// Rank of P: the degrees of freedom of the value. kUnusable if error or covariance is not finite
-  /// or the covariance is not positive semidefinite.
+  /// or the covariance is not positive semidefinite; kMissing if there is no estimate.
   int rank;
 
-  bool is_usable() const { return rank != kUnusable; }
+  bool is_usable() const { return rank >= 0; }
 };
 
 /// NEES of the components [first, first + Dimension) of a pose error (x [m], y [m], heading [rad])

@@ -48,7 +48,8 @@ void measure_imported(const ErrorRows& errors, bool is_pose, NeesRows& rows) {
   for (std::size_t s = 0; s < scans; ++s) {
     const Eigen::VectorXd e = errors.error(s);
     const Eigen::MatrixXd P = errors.covariance_of(s);
-    const Nees whole = imported_nees(e, P);
+    const bool is_missing = e.array().isNaN().all() && P.array().isNaN().all();
+    const Nees whole = is_missing ? Nees{kNaN, Nees::kMissing} : imported_nees(e, P);
     rows.set(0, s, whole);
     if (!is_pose) continue;
     rows.set(1, s, whole.is_usable() ? imported_nees(e.head(2), P.topLeftCorner(2, 2)) : whole);

@@ -45,8 +45,9 @@ void NeesAccumulator::add(const RunMetrics& metrics) {
 
 void NeesAccumulator::add(std::span<const double> value, std::span<const int> rank,
                           std::span<const std::uint8_t> too_few) {
-  samples_ += value.size();
   for (std::size_t s = 0; s < value.size(); ++s) {
+    if (!rank.empty() && rank[s] == Nees::kMissing) continue;
+    ++samples_;
     const bool has_lower_rank =
         !rank.empty() && rank[s] >= 0 && static_cast<std::size_t>(rank[s]) < dimension_;
     if (has_lower_rank) ++lower_rank_;
@@ -75,6 +76,7 @@ NeesSeries NeesAccumulator::series(double level) const {
   series.samples = samples_;
   series.lower_rank = lower_rank_;
   series.unusable = unusable_;
+  series.missing = (run_averages_.size() + unjudged_runs_) * sum_.size() - samples_;
   series.too_few = too_few_;
   series.runs = runs_;
   series.run_averages = run_averages_;

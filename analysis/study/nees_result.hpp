@@ -21,7 +21,8 @@ struct NeesSeries {
   /// {scan} bounds of the average of a consistent filter at that scan.
   std::vector<Interval> bounds;
   std::vector<double> run_averages;  ///< {run with a NEES} mean over its scans
-  std::uint64_t samples = 0;         ///< number of samples: scans x complete runs
+  std::uint64_t samples = 0;         ///< number of samples of complete runs, without missing ones
+  std::uint64_t missing = 0;         ///< number of scans of complete runs without an estimate
   /// Number of samples with a singular covariance, judged in its range. Samples of rank 0 have no
   /// NEES and are left out.
   std::uint64_t lower_rank = 0;

@@ -366,13 +366,18 @@ std::string slight_words(const Verdict& verdict) {
 /// none.
 std::string exceptions_of(const Verdict& found) {
   std::string words;
-  if (found.failed > 0) {
-    words = std::to_string(found.failed) + " of " + std::to_string(found.runs) + " runs failed";
-  }
-  if (found.unusable > 0) {
-    words += (words.empty() ? "" : ", ") + std::to_string(found.unusable) + " of " +
-             std::to_string(found.samples) + " samples are unusable";
-  }
+  const auto add = [&](std::uint64_t count, std::uint64_t of, const std::string& what) {
+    if (count == 0) return;
+    words +=
+        (words.empty() ? "" : ", ") + std::to_string(count) + " of " + std::to_string(of) + what;
+  };
+  const auto samples = [](std::uint64_t count) {
+    return count == 1 ? " samples is " : " samples are ";
+  };
+  add(found.failed, found.runs, " runs failed");
+  add(found.unusable, found.samples, samples(found.unusable) + std::string("unusable"));
+  add(found.missing, found.samples + found.missing,
+      samples(found.missing) + std::string("missing"));
   return words;
 }
 

@@ -156,8 +156,9 @@ struct Verdict {
   BesideTests beside = {};
   std::uint64_t runs = 0;      ///< number of runs that ended, complete or failed
   std::uint64_t failed = 0;    ///< number of runs that failed
-  std::uint64_t samples = 0;   ///< number of scans of all complete runs
+  std::uint64_t samples = 0;   ///< number of samples of complete runs, without missing ones
   std::uint64_t unusable = 0;  ///< number of samples without a finite error or a covariance matrix
+  std::uint64_t missing = 0;   ///< number of scans of complete runs without an estimate
   std::optional<std::uint64_t> more_runs = {};  ///< number of further runs that decide, if known
   /// Whether a deviation is shown to be beyond the margin, at `level` for all tests together: only
   /// then is the filter refused. A deviation within the margin is called slight.

@@ -101,6 +101,7 @@ Json json_of(const std::string& label, const Verdict& verdict, const Allowance& 
           {"samples", verdict.samples},
           {"unusable", verdict.unusable},
           {"unusable_allowed", allowed.unusable},
+          {"missing", verdict.missing},
           {"families", std::move(families)}};
 }
 

@@ -38,6 +38,7 @@ JudgingOptions judging_options(const Arguments& arguments) {
   options.match.tolerance =
       arguments.number("tolerance", 0.0, 1e6).value_or(options.match.tolerance);
   options.match.interpolate = arguments.has("interpolate");
+  options.match.longest_gap = arguments.number("longest-gap", 0.0, 1e9);
   options.existing = arguments.has("force") ? Existing::replace : Existing::refuse;
   options.provenance = provenance_of("judge", arguments);
   options.within = arguments.number("within", kLeastMargin, kMostMargin);

@@ -7,46 +7,43 @@
 #include "engine/records/posix_file.hpp"
 #include "experiments/files/files.hpp"
 #include "experiments/judging/innovation_rows.hpp"
+#include "experiments/judging/scan_clock.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <memory>
 #include <numeric>
+#include <span>
 #include <system_error>
+#include <utility>
 
 namespace montecarta::experiments {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// Checks that all files have the same kind of state and the same times, because averages over runs
-/// are taken at each time. A run may end before the others.
+/// Throws StudyError if a file has another state than the first one, or innovations and the first
+/// one not.
 void require_alike(const StateRows& rows, const fs::path& path, const StateRows& first,
-                   const fs::path& first_path, double tolerance) {
+                   const fs::path& first_path) {
   if (rows.shape != first.shape) {
     throw StudyError(path.string() + ": another state than in " + first_path.string() +
                      " (one study judges one state): judge them apart");
   }
-  if (rows.time.empty()) return;
-  if (rows.nis.empty() != first.nis.empty()) {
-    throw StudyError(path.string() + ": " + (rows.nis.empty() ? "no nis" : "has nis") + " (in " +
-                     first_path.string() + " it is otherwise): give it in all files or in none");
-  }
-  if (rows.time.size() > first.time.size()) {
-    throw StudyError(path.string() + ": " + std::to_string(rows.time.size()) + " rows, " +
-                     first_path.string() + " has " + std::to_string(first.time.size()) +
-                     " with as many lines: give all files one layout");
-  }
-  for (std::size_t s = 0; s < rows.time.size(); ++s) {
-    if (std::abs(rows.time[s] - first.time[s]) <= tolerance) continue;
-    throw StudyError(path.string() + ": row " + std::to_string(s + 1) + " has time " +
-                     to_text(rows.time[s]) + " s (" + first_path.string() + " has " +
-                     to_text(first.time[s]) +
-                     " s there, and averages over runs are taken at each "
-                     "time): give all runs the same times, counted from their start");
-  }
+  if (rows.time.empty() || rows.nis.empty() == first.nis.empty()) return;
+  throw StudyError(path.string() + ": " + (rows.nis.empty() ? "no nis" : "has nis") + " (in " +
+                   first_path.string() + " it is otherwise): give it in all files or in none");
 }
+
+/// The estimates of one file, with the scan and the truth of each row.
+struct MatchedRows {
+  StateRows rows;
+  std::vector<std::size_t> scans;                      ///< {row}
+  std::vector<std::optional<Eigen::VectorXd>> truths;  ///< {row} nullopt: the estimate is left out
+};
 
 Pose pose_in(const Eigen::VectorXd& state) { return {state(0), state(1), wrap(state(2))}; }
 
@@ -59,64 +56,91 @@ void put_rows(const Eigen::MatrixXd& matrix, std::size_t scan, std::span<double>
   }
 }
 
-/// Marks a run as complete, or as failed if it ends before the others.
-void end_run(const StateRows& rows, std::size_t scans, RunRecord& record) {
+/// Marks a run as complete, or as failed if it ends although its truth goes on. If runs have clocks
+/// of their own, only a run without estimates is known to have failed.
+void end_run(const MatchedRows& run, const TruthPath& truth, const ScanClock& clock,
+             RunRecord& record) {
   constexpr double kUnknownCost = std::numeric_limits<double>::quiet_NaN();
-  if (rows.time.size() == scans) {
-    record.mark_complete(kUnknownCost);
-    return;
-  }
-  const std::string reason =
-      rows.time.empty() ? "no estimates" : "estimates end at " + to_text(rows.time.back()) + " s";
-  record.mark_failed(static_cast<std::uint32_t>(rows.time.size()), reason, kUnknownCost);
+  const std::size_t next = run.scans.empty() ? 0 : run.scans.back() + 1;
+  const bool is_failed = run.scans.empty() || (clock.is_common() && next < clock.times().size() &&
+                                               truth.goes_on_at(clock.times()[next]));
+  if (!is_failed) return record.mark_complete(kUnknownCost);
+  const std::string reason = run.scans.empty()
+                                 ? "no estimates"
+                                 : "estimates end at " + to_text(run.rows.time.back()) + " s";
+  record.mark_failed(static_cast<std::uint32_t>(next), reason, kUnknownCost);
 }
 
-/// Writes the NEES under every convention of the state, if the file has columns for them.
-void put_conventions(const StateRows& rows, const std::vector<Eigen::VectorXd>& truths,
-                     RunRecord& record) {
-  for (const ErrorConvention convention : conventions_of(rows.shape.kind)) {
+/// Writes the NEES of a row under every convention of the state, if the file has columns for them.
+void put_conventions(const MatchedRows& run, std::size_t row, RunRecord& record) {
+  const StateShape& shape = run.rows.shape;
+  for (const ErrorConvention convention : conventions_of(shape.kind)) {
     const auto column = record.layout().find(nees_column(convention));
     if (!column) return;
-    const auto nees = record.column<double>(*column);
-    for (std::size_t s = 0; s < rows.time.size(); ++s) {
-      const Eigen::VectorXd error = error_of(rows.shape, convention, rows.state[s], truths[s]);
-      nees[s] = analysis::on_full_scale(analysis::imported_nees(error, rows.covariance[s]),
-                                        rows.shape.dimension());
-    }
+    const Eigen::VectorXd error =
+        error_of(shape, convention, run.rows.state[row], *run.truths[row]);
+    const analysis::Nees nees = analysis::imported_nees(error, run.rows.covariance[row]);
+    record.column<double>(*column)[run.scans[row]] =
+        analysis::on_full_scale(nees, shape.dimension());
   }
 }
 
-/// The record of one run of one estimator.
-RunRecord record_of(const RecordLayout& layout, const StateRows& rows,
-                    const std::vector<Eigen::VectorXd>& truths, ErrorConvention convention) {
+/// Writes the pose of a row, moved by the truth's motion from the row's own time to `truth`, which
+/// is the truth of the scan: so its error stays that at its own time.
+void put_pose(const MatchedRows& run, std::size_t row, const Pose& truth,
+              ErrorConvention convention, RunRecord& record) {
+  const auto column = [&](const char* name) {
+    return record.column<double>(*record.layout().find(name));
+  };
+  const Pose own = pose_in(*run.truths[row]);
+  Pose mean = pose_in(run.rows.state[row]);
+  mean.x += truth.x - own.x;
+  mean.y += truth.y - own.y;
+  if (truth.heading != own.heading) mean.heading = wrap(mean.heading + truth.heading - own.heading);
+  const std::size_t s = run.scans[row];
+  put_rows(Eigen::Vector3d(mean.x, mean.y, mean.heading), s, column("pose_mean"));
+  put_rows(covariance_in_map(convention, run.rows.state[row], run.rows.covariance[row]), s,
+           column("pose_covariance"));
+}
+
+/// The record of one run of one estimator. Scans without an estimate stay NaN, and are missing.
+RunRecord record_of(const RecordLayout& layout, const MatchedRows& run,
+                    const std::vector<Pose>& scan_truths, ErrorConvention convention) {
   RunRecord record(layout);
+  const StateRows& rows = run.rows;
   const auto column = [&](const char* name) { return record.column<double>(*layout.find(name)); };
   const auto faults = record.column<std::uint32_t>(*layout.find("numerical_faults"));
-  for (std::size_t s = 0; s < rows.time.size(); ++s) {
-    const Eigen::VectorXd error = error_of(rows.shape, convention, rows.state[s], truths[s]);
+  for (std::size_t row = 0; row < rows.time.size(); ++row) {
+    const std::size_t s = run.scans[row];
+    if (!rows.nis.empty()) {
+      column("nis")[s] = rows.nis[row];
+      record.column<std::uint32_t>(*layout.find("nis_dof"))[s] = rows.nis_dof[row];
+    }
+    if (!run.truths[row]) continue;
+    const Eigen::VectorXd error =
+        error_of(rows.shape, convention, rows.state[row], *run.truths[row]);
     put_rows(error, s, column("error"));
-    put_rows(rows.covariance[s], s, column("error_covariance"));
-    faults[s] = analysis::imported_nees(error, rows.covariance[s]).is_usable() ? 0 : 1;
-    if (rows.shape.kind != StateKind::pose) continue;
-    const Pose mean = pose_in(rows.state[s]);
-    put_rows(Eigen::Vector3d(mean.x, mean.y, mean.heading), s, column("pose_mean"));
-    put_rows(covariance_in_map(convention, rows.state[s], rows.covariance[s]), s,
-             column("pose_covariance"));
+    put_rows(rows.covariance[row], s, column("error_covariance"));
+    faults[s] = analysis::imported_nees(error, rows.covariance[row]).is_usable() ? 0 : 1;
+    if (rows.shape.kind == StateKind::pose) put_pose(run, row, scan_truths[s], convention, record);
+    put_conventions(run, row, record);
   }
-  if (!rows.nis.empty()) {
-    std::ranges::copy(rows.nis, column("nis").begin());
-    std::ranges::copy(rows.nis_dof, record.column<std::uint32_t>(*layout.find("nis_dof")).begin());
-  }
-  put_conventions(rows, truths, record);
-  end_run(rows, truths.size(), record);
   return record;
 }
 
-/// The estimates that define the times of the study.
-struct LongestRun {
-  fs::path path;
-  StateRows rows;
-};
+/// {scan} The truth of a run: that of the first estimator with an estimate there; NaN if none has
+/// one.
+std::vector<Pose> truths_of_scans(const std::vector<MatchedRows>& cells, std::size_t scans) {
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  std::vector<Pose> truths(scans, Pose{kUnknown, kUnknown, kUnknown});
+  for (const MatchedRows& cell : cells) {
+    for (std::size_t row = 0; row < cell.scans.size(); ++row) {
+      Pose& truth = truths[cell.scans[row]];
+      if (cell.truths[row] && std::isnan(truth.x)) truth = pose_in(*cell.truths[row]);
+    }
+  }
+  return truths;
+}
 
 StateRows read_with_innovations(const fs::path& path, double tolerance) {
   StateRows rows = read_estimates(path);
@@ -126,20 +150,38 @@ StateRows read_with_innovations(const fs::path& path, double tolerance) {
   return rows;
 }
 
-/// Reads only the file with the most lines; the others are read when their runs are written.
-LongestRun longest_of(const JudgedFiles& files, double tolerance) {
+/// Throws StudyError if the tolerance does not tell the rows of a file apart.
+void require_tolerance(const fs::path& path, std::span<const double> times, double tolerance) {
+  const double least = least_spacing(times);
+  if (2.0 * tolerance < least) return;
+  throw StudyError("--tolerance " + to_text(tolerance) + ": rows of " + path.string() + " are " +
+                   to_text(least) + " s apart (half of that cannot tell neighbours apart): use " +
+                   "--interpolate, or a smaller --tolerance");
+}
+
+/// The clock of all files, and the file with the most rows, which has the state and innovations of
+/// all others.
+struct Overview {
+  fs::path path;
+  StateRows rows;
+  ScanClock clock;
+};
+
+Overview overview_of(const JudgedFiles& files, double tolerance) {
+  std::vector<std::vector<double>> times;
   fs::path longest;
   std::size_t most = 0;
   for (const EstimatorFiles& cell : files.cells) {
     for (const fs::path& path : cell.of_run) {
-      const std::size_t rows = rows_in(path);
-      if (!longest.empty() && rows <= most) continue;
+      times.push_back(times_in(path));
+      require_tolerance(path, times.back(), tolerance);
+      if (!longest.empty() && times.back().size() <= most) continue;
       longest = path;
-      most = rows;
+      most = times.back().size();
     }
   }
   StateRows rows = read_with_innovations(longest, tolerance);
-  if (!rows.time.empty()) return {longest, std::move(rows)};
+  if (most > 0) return {longest, std::move(rows), ScanClock(times, tolerance)};
   throw StudyError(longest.string() +
                    ": no rows behind the header, nor in any other file (nothing to judge): write "
                    "one row for each time");
@@ -163,36 +205,73 @@ class UnwrappedInnovations {
   std::string first_;
 };
 
+/// Notes on runs whose clocks differ, and on scans without an estimate.
+std::vector<std::string> notes_on_times(const Overview& all, std::uint64_t missing) {
+  std::vector<std::string> notes;
+  if (!all.clock.is_common()) {
+    notes.push_back(
+        "runs have clocks of their own: row k of each is judged with row k of the "
+        "others, at the times of " +
+        all.path.string() + ", and a run with fewer rows is not counted as failed");
+  }
+  if (missing > 0) {
+    notes.push_back(std::to_string(missing) + (missing == 1 ? " sample is" : " samples are") +
+                    " missing (a scan of other runs without an estimate): each run is judged by "
+                    "the scans that it has");
+  }
+  return notes;
+}
+
+/// Number of scans of a run without an estimate, before its end.
+std::uint64_t missing_in(const MatchedRows& run, const ScanClock& clock) {
+  if (run.scans.empty()) return 0;
+  const std::size_t end = clock.is_common() ? run.scans.back() + 1 : run.scans.size();
+  return end - run.scans.size();
+}
+
 std::vector<std::string> write_runs(const JudgedFiles& files, const JudgingOptions& options,
-                                    const LongestRun& longest, const StudyPlan& plan,
+                                    const Overview& all, const StudyPlan& plan,
                                     ResultWriter& writer) {
   const std::vector<RecordLayout> layouts = layouts_of(plan, Detail::usual);
   UnwrappedInnovations unwrapped;
+  TruthUse use;
+  std::uint64_t missing = 0;
   for (std::size_t run = 0; run < files.runs.size(); ++run) {
-    const StateRows truth = read_truth(files.truth[run], longest.rows.shape);
-    for (std::size_t c = 0; c < files.cells.size(); ++c) {
-      const fs::path& path = files.cells[c].of_run[run];
-      const StateRows rows = read_with_innovations(path, options.match.tolerance);
+    const TruthPath truth(read_truth(files.truth[run], all.rows.shape), files.truth[run],
+                          options.match);
+    std::vector<MatchedRows> cells;
+    for (const EstimatorFiles& cell : files.cells) {
+      const fs::path& path = cell.of_run[run];
+      StateRows rows = read_with_innovations(path, options.match.tolerance);
       unwrapped.add(rows);
-      require_alike(rows, path, longest.rows, longest.path, options.match.tolerance);
-      std::vector<Eigen::VectorXd> truths;
-      for (const double time : longest.rows.time)
-        truths.push_back(truth_at(truth, time, options.match, path, files.truth[run]));
-      if (c == 0 && plan.drives->itinerary().has_truth) {
-        Drive drive;
-        std::ranges::transform(truths, std::back_inserter(drive.truth), pose_in);
-        writer.write_truth(run, drive);
-      }
-      writer.write(c, run, record_of(layouts[c], rows, truths, *options.convention));
+      require_alike(rows, path, all.rows, all.path);
+      std::vector<std::size_t> scans = all.clock.scans_of(rows.time);
+      auto truths = truth.at(rows, path, use);
+      cells.push_back({std::move(rows), std::move(scans), std::move(truths)});
+      missing += missing_in(cells.back(), all.clock);
+    }
+    std::vector<Pose> scan_truths;
+    if (plan.drives->itinerary().has_truth) {
+      Drive drive;
+      drive.truth = scan_truths = truths_of_scans(cells, all.clock.times().size());
+      writer.write_truth(run, drive);
+    }
+    for (std::size_t c = 0; c < cells.size(); ++c) {
+      RunRecord record = record_of(layouts[c], cells[c], scan_truths, *options.convention);
+      end_run(cells[c], truth, all.clock, record);
+      writer.write(c, run, record);
     }
   }
-  return unwrapped.notes();
+  std::vector<std::string> notes = unwrapped.notes();
+  std::ranges::copy(notes_on_times(all, missing), std::back_inserter(notes));
+  std::ranges::copy(use.notes(), std::back_inserter(notes));
+  return notes;
 }
 
 /// The convention that the user gave, or the only one that the state may have. Throws StudyError if
 /// none was given and there are several.
-ErrorConvention stated_error(const LongestRun& longest, std::optional<ErrorConvention> said) {
-  const auto known = conventions_of(longest.rows.shape.kind);
+ErrorConvention stated_error(const Overview& all, std::optional<ErrorConvention> said) {
+  const auto known = conventions_of(all.rows.shape.kind);
   if (!said && known.size() == 1) return known.front();
   if (!said) {
     throw StudyError(
@@ -201,18 +280,18 @@ ErrorConvention stated_error(const LongestRun& longest, std::optional<ErrorConve
         "explains");
   }
   if (std::ranges::find(known, *said) != known.end()) return *said;
-  throw StudyError("--error " + name_of(*said) + ": not of a vector (" + longest.path.string() +
+  throw StudyError("--error " + name_of(*said) + ": not of a vector (" + all.path.string() +
                    " has no pose, and only poses have frames): give --error world");
 }
 
 /// A source of drives that has only the times of the estimates.
 class ImportedDrives final : public DriveSource {
  public:
-  explicit ImportedDrives(const StateRows& rows) {
-    itinerary_.step_time = rows.time;
-    itinerary_.scan_step.resize(rows.time.size());
+  ImportedDrives(std::vector<double> times, bool has_truth) {
+    itinerary_.step_time = std::move(times);
+    itinerary_.scan_step.resize(itinerary_.step_time.size());
     std::iota(itinerary_.scan_step.begin(), itinerary_.scan_step.end(), 0U);
-    itinerary_.has_truth = rows.shape.kind == StateKind::pose;
+    itinerary_.has_truth = has_truth;
   }
   const Itinerary& itinerary() const override { return itinerary_; }
   void generate(std::uint64_t /*run*/, Drive& /*drive*/) const override {
@@ -266,11 +345,12 @@ Cell imported_cell(const EstimatorFiles& files, const StateRows& first, const Te
   return cell;
 }
 
-/// The plan that defines the layout of the result file; it cannot be run. `first` has the state and
-/// the times of all estimates. The text of the plan contains the SHA-256 of all files, so that
-/// results of the same estimates, judged with the same options, have the same study_sha256.
-StudyPlan imported_plan(const JudgedFiles& files, const StateRows& first,
+/// The plan that defines the layout of the result file; it cannot be run. The text of the plan
+/// contains the SHA-256 of all files, so that results of the same estimates, judged with the same
+/// options, have the same study_sha256.
+StudyPlan imported_plan(const JudgedFiles& files, const Overview& all_files,
                         const JudgingOptions& options) {
+  const StateRows& first = all_files.rows;
   const TextPairs settings = import_settings(first, options);
   StudyPlan plan;
   plan.name = options.output.stem().string();
@@ -278,7 +358,8 @@ StudyPlan imported_plan(const JudgedFiles& files, const StateRows& first,
   plan.first_run = files.runs.front();
   plan.last_run = plan.runs = files.runs.back() + 1;
   plan.columns = {.ancestry = false, .scans_only = true};
-  plan.drives = std::make_shared<ImportedDrives>(first);
+  plan.drives = std::make_shared<ImportedDrives>(all_files.clock.times(),
+                                                 first.shape.kind == StateKind::pose);
   plan.scenario = {{"kind", "imported"},
                    {"tolerance", to_text(options.match.tolerance)},
                    {"interpolate", options.match.interpolate ? "yes" : "no"}};
@@ -294,14 +375,14 @@ StudyPlan imported_plan(const JudgedFiles& files, const StateRows& first,
 }  // namespace
 
 std::vector<std::string> judge_files(const JudgedFiles& files, const JudgingOptions& given) {
-  const LongestRun longest = longest_of(files, given.match.tolerance);
+  const Overview all = overview_of(files, given.match.tolerance);
   JudgingOptions options = given;
-  options.convention = stated_error(longest, given.convention);
-  const StudyPlan plan = imported_plan(files, longest.rows, options);
+  options.convention = stated_error(all, given.convention);
+  const StudyPlan plan = imported_plan(files, all, options);
   ResultWriter writer =
       ResultWriter::create(options.output, plan, options.provenance, options.existing);
   try {
-    std::vector<std::string> notes = write_runs(files, options, longest, plan, writer);
+    std::vector<std::string> notes = write_runs(files, options, all, plan, writer);
     writer.finish();
     return notes;
   } catch (...) {

@@ -6,7 +6,7 @@
 #include "engine/records/result_writer.hpp"
 #include "experiments/judging/error_convention.hpp"
 #include "experiments/judging/run_files.hpp"
-#include "experiments/judging/truth_at.hpp"
+#include "experiments/judging/truth_path.hpp"
 
 #include <filesystem>
 #include <optional>
@@ -28,9 +28,9 @@ struct JudgingOptions {
 };
 
 /// Reads estimates and truths run by run, and writes their errors as a result file that can be
-/// analysed like that of a study. Trajectories are not aligned. Memory does not grow with the
-/// number of runs. Returns notes on contents that are judged as they are, but are likely a mistake.
-/// Throws StudyError with file, line and remedy, and then leaves no file.
+/// analysed like that of a study. Trajectories are not aligned. Memory grows with the
+/// number of runs by their times alone. Returns notes on contents that are judged as they are, but
+/// are likely a mistake. Throws StudyError with file, line and remedy, and then leaves no file.
 std::vector<std::string> judge_files(const JudgedFiles& files, const JudgingOptions& options);
 
 /// Beginning of the text of an imported study, with which no study file begins.

@@ -19,11 +19,11 @@ StateRows read_estimates(const std::filesystem::path& path) {
   return rows;
 }
 
-std::size_t rows_in(const std::filesystem::path& path) {
+std::vector<double> times_in(const std::filesystem::path& path) {
   CsvRows file(path);
-  std::size_t rows = 0;
-  while (file.next()) ++rows;
-  return rows;
+  std::vector<double> times;
+  while (file.next()) times.push_back(file.time());
+  return times;
 }
 
 StateRows read_truth(const std::filesystem::path& path, const StateShape& shape) {

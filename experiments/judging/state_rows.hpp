@@ -15,22 +15,22 @@ namespace montecarta::experiments {
 
 /// Estimates or truths of one run, as read from a file.
 struct StateRows {
-  StateShape shape;
-  std::vector<double> time;                 ///< [s] {row}, increasing
-  std::vector<Eigen::VectorXd> state;       ///< {row}{width}, quaternions of length 1
-  std::vector<Eigen::MatrixXd> covariance;  ///< {row}{d, d} as in the file; empty for a truth
-  std::vector<double> nis;                  ///< {row} empty if the file has none
-  std::vector<std::uint32_t> nis_dof;       ///< {row} empty if the file has none
-  std::uint64_t unwrapped_innovations = 0;  ///< number of innovations with an angle beyond pi
-  std::string first_unwrapped = {};         ///< file and line of the first of them
+  StateShape shape = {};
+  std::vector<double> time = {};                 ///< [s] {row}, increasing
+  std::vector<Eigen::VectorXd> state = {};       ///< {row}{width}, quaternions of length 1
+  std::vector<Eigen::MatrixXd> covariance = {};  ///< {row}{d, d} as in the file; empty for a truth
+  std::vector<double> nis = {};                  ///< {row} empty if the file has none
+  std::vector<std::uint32_t> nis_dof = {};       ///< {row} empty if the file has none
+  std::uint64_t unwrapped_innovations = 0;       ///< number of innovations with an angle beyond pi
+  std::string first_unwrapped = {};              ///< file and line of the first of them
 };
 
 /// Reads estimates (mean and covariance over time) from CSV. Throws StudyError with file, line and
 /// remedy if the file is empty or damaged, or a number is not finite.
 StateRows read_estimates(const std::filesystem::path& path);
 
-/// Number of rows in a file.
-std::size_t rows_in(const std::filesystem::path& path);
+/// {row} The times [s] in a file of estimates. Throws StudyError if they do not increase.
+std::vector<double> times_in(const std::filesystem::path& path);
 
 /// Reads a truth of the same state; other columns are ignored. Throws like read_estimates().
 StateRows read_truth(const std::filesystem::path& path, const StateShape& shape);

@@ -212,23 +212,78 @@ TEST_F(Judge, WrongInputIsNamed) {
               AllOf(HasSubstr("run 7"), HasSubstr("right-invariant")));
 }
 
-// Averages over runs are taken at each time, of one state.
+/// Runs of a state x whose errors the tests choose, judged with truths of their own.
+class JudgeTimes : public Judge {
+ protected:
+  /// Writes estimates and truth of a run; the error of each row is `error`, its variance 1.
+  void write_run(int run, const std::vector<double>& times, double error) {
+    std::string estimate = "time_s,x_m,cov_0_0\n", truth = "time_s,x_m\n";
+    for (const double t : times) {
+      estimate += to_text(t) + "," + to_text(100.0 * t + error) + ",1\n";
+      truth += to_text(t) + "," + to_text(100.0 * t) + "\n";
+    }
+    write("e_" + std::to_string(run) + ".csv", estimate);
+    write("truth_" + std::to_string(run) + ".csv", truth);
+  }
+  Called judged(const std::vector<std::string>& options = {}) {
+    std::vector<std::string> words = {"--truth", "truth_0.csv", "truth_1.csv", "truth_2.csv",
+                                      "--error", "world",       "-o",          "mine.h5",
+                                      "--force"};
+    words.insert(words.end(), options.begin(), options.end());
+    return judge({"e_0.csv", "e_1.csv", "e_2.csv"}, words);
+  }
+  /// The errors in the file, {run, scan}; NaN where there is none.
+  std::vector<double> errors() {
+    const ResultFile file(folder_ / "mine.h5");
+    std::vector<double> all;
+    for (std::size_t run = 0; run < file.runs().size(); ++run) {
+      for (const double e : file.rows<double>(file.cells().front(), "error", run)) all.push_back(e);
+    }
+    return all;
+  }
+};
+
 TEST_F(Judge, RunsThatAreNotAlikeAreNamed) {
   write("truth_0.csv", "time_s,x_m\n1,0\n2,0\n");
   write("e_0.csv", "time_s,x_m,cov_0_0\n1,0,1\n2,0,1\n");
-  const auto said = [&](const std::string& truth, const std::string& estimate) {
-    write("truth_1.csv", truth);
-    write("e_1.csv", estimate);
-    return judge({"e_0.csv", "e_1.csv"},
-                 {"--truth", "truth_0.csv", "truth_1.csv", "--error", "world", "-o", "mine.h5"})
-        .err;
-  };
-  EXPECT_THAT(said("time_s,x_m\n1,0\n2.5,0\n", "time_s,x_m,cov_0_0\n1,0,1\n2.5,0,1\n"),
-              HasSubstr("e_1.csv: row 2 has time 2.5 s (e_0.csv has 2 s there"));
-  EXPECT_THAT(said("time_s,x_m,v_mps\n1,0,0\n2,0,0\n",
-                   "time_s,x_m,v_mps,cov_0_0,cov_0_1,cov_1_1\n1,0,0,1,0,1\n2,0,0,1,0,1\n"),
+  write("truth_1.csv", "time_s,x_m,v_mps\n1,0,0\n2,0,0\n");
+  write("e_1.csv", "time_s,x_m,v_mps,cov_0_0,cov_0_1,cov_1_1\n1,0,0,1,0,1\n2,0,0,1,0,1\n");
+  EXPECT_THAT(judge({"e_0.csv", "e_1.csv"},
+                    {"--truth", "truth_0.csv", "truth_1.csv", "--error", "world", "-o", "mine.h5"})
+                  .err,
               HasSubstr("e_1.csv: another state than in e_0.csv"));
   EXPECT_FALSE(exists("mine.h5"));
+}
+
+TEST_F(JudgeTimes, AreThoseOfEachRowEvenIfClocksDiffer) {
+  write_run(0, {0, 1, 2, 3}, 0.5);
+  write_run(1, {0.004, 1.004, 2.004, 3.004}, 1.5);
+  write_run(2, {0, 1, 2, 3}, -2.5);
+  judged({"--tolerance", "0.01"});
+  const std::vector<double> expected = {0.5, 0.5, 0.5, 0.5, 1.5, 1.5, 1.5, 1.5, -2.5, -2.5, -2.5, -2.5};
+  EXPECT_THAT(errors(), testing::Pointwise(testing::DoubleNear(1e-9), expected));
+  write_run(0, {5.3, 6.3, 7.3, 8.3}, 0.5);
+  write_run(1, {0.1, 1.2, 2.1, 3.4}, 1.5);
+  EXPECT_THAT(judged().err, HasSubstr("runs have clocks of their own"));
+  EXPECT_THAT(errors(), testing::Pointwise(testing::DoubleNear(1e-9), expected));
+}
+
+TEST_F(JudgeTimes, MayLackSamplesWhichAreCounted) {
+  write_run(0, {0, 1, 2, 3}, 0.5);
+  write_run(1, {2, 3}, 1.5);
+  write_run(2, {0, 2, 3}, -2.5);
+  const Called called = judged();
+  EXPECT_THAT(called.err, HasSubstr("3 samples are missing"));
+  EXPECT_THAT(called.out, HasSubstr("3 of 12 samples are missing"));
+  EXPECT_THAT(errors(), testing::Pointwise(testing::NanSensitiveDoubleNear(1e-9),
+                                           {0.5, 0.5, 0.5, 0.5, NAN, NAN, 1.5, 1.5, -2.5, NAN, -2.5, -2.5}));
+}
+
+TEST_F(JudgeTimes, AreRefusedIfTheToleranceCannotTellScansApart) {
+  for (const int run : {0, 1, 2}) write_run(run, {0, 0.5, 1, 1.5}, 1.0);
+  EXPECT_THAT(judged({"--tolerance", "0.26"}).err,
+              HasSubstr("half of that cannot tell neighbours apart"));
+  EXPECT_EQ(judged({"--tolerance", "0.24"}).code, 0);
 }
 
 // Other input of 'montecarta judge' than one CSV file a run, and its part in the result.

@@ -2,7 +2,7 @@
 #include "engine/numbers/angle.hpp"
 #include "experiments/judging/innovation_rows.hpp"
 #include "experiments/judging/run_files.hpp"
-#include "experiments/judging/truth_at.hpp"
+#include "experiments/judging/truth_path.hpp"
 #include "tests/doubles/complaint.hpp"
 #include "tests/doubles/matchers.hpp"
 #include "tests/doubles/scratch_folder.hpp"
@@ -104,19 +104,55 @@ TEST_F(StateFiles, MayHaveInnovations) {
 
 TEST_F(StateFiles, HaveTruthsAtTheTimesOfEstimatesOrBetween) {
   const StateShape shape{StateKind::vector, {"a_rad", "b_m"}, {"a", "b"}, {"rad", "m"}};
-  const StateRows truth =
-      read_truth(written("time_s,other,b_m,a_rad\n0,9,0,3\n1,9,10,-3\n"), shape);
-  const auto at = [&](double time, const TimeMatch& match) {
-    return truth_at(truth, time, match, "est.csv", "truth.csv");
+  const StateRows rows = read_truth(written("time_s,other,b_m,a_rad\n0,9,0,3\n1,9,10,-3\n"), shape);
+  TruthUse use;
+  const auto at = [&](const std::vector<double>& times, const TimeMatch& match) {
+    return TruthPath(rows, "truth.csv", match).at({.shape = shape, .time = times}, "est.csv", use);
   };
-  EXPECT_EQ(at(1.0 + 1e-7, {}), Eigen::Vector2d(-3, 10));
-  EXPECT_EQ(at(0.1, {.tolerance = 0.2}), Eigen::Vector2d(3, 0));
-  const Eigen::VectorXd half = at(0.5, {.interpolate = true});
+  EXPECT_EQ(at({1.0 + 1e-7}, {})[0], Eigen::Vector2d(-3, 10));
+  EXPECT_THAT(use.notes(), IsEmpty());
+  EXPECT_EQ(at({0.1}, {.tolerance = 0.2})[0], Eigen::Vector2d(3, 0));
+  EXPECT_THAT(use.notes(), ElementsAre(HasSubstr("up to 0.1 s beside their estimates (est.csv")));
+  const auto half = at({0.5}, {.interpolate = true})[0].value();
   EXPECT_NEAR(std::abs(half(0)), kPi, 1e-12);
   EXPECT_EQ(half(1), 5.0);
-  EXPECT_THAT(complaint_of([&] { at(0.25, {}); }), HasSubstr("est.csv: time 0.25 s has no truth"));
-  EXPECT_THAT(complaint_of([&] { at(1.5, {.interpolate = true}); }), HasSubstr("outside of the"));
+  EXPECT_THAT(complaint_of([&] { at({0.25}, {}); }),
+              HasSubstr("est.csv: time 0.25 s has no truth"));
+  EXPECT_THAT(complaint_of([&] {
+                at({0.9, 1.1}, {.tolerance = 0.2});
+              }),
+              HasSubstr("time 1.1 s and the time before have the same row of the truth"));
   EXPECT_THROW(read_truth(written("time_s,b_m\n0,1\n"), shape), StudyError);
+}
+
+TEST_F(StateFiles, HaveNoTruthInAGapNorOutsideOfIt) {
+  const StateShape shape{StateKind::vector, {"b_m"}, {"b"}, {"m"}};
+  std::string text = "time_s,b_m\n";
+  for (const int time : {0, 1, 2, 3, 30, 31, 32}) text += std::to_string(time) + ",0\n";
+  const StateRows rows = read_truth(written(text), shape);
+  const auto known = [&](const TimeMatch& match, TruthUse& use) {
+    const std::vector<double> times = {0.5, 3.0, 3.5, 29.0, 31.5, 33.0};
+    std::vector<int> found;
+    for (const auto& one :
+         TruthPath(rows, "truth.csv", match).at({.shape = shape, .time = times}, "est.csv", use)) {
+      found.push_back(one ? 1 : 0);
+    }
+    return found;
+  };
+  TruthUse use, longer;
+  EXPECT_THAT(known({.interpolate = true}, use), ElementsAre(1, 1, 0, 0, 1, 0));
+  EXPECT_THAT(use.notes(),
+              ElementsAre(HasSubstr("2 estimates lie in gaps of the truth and are missing "
+                                    "(truth.csv has no row from 3 to 30 s)"),
+                          HasSubstr("1 estimates lie before or after the truth")));
+  EXPECT_THAT(known({.interpolate = true, .longest_gap = 27.0}, longer),
+              ElementsAre(1, 1, 1, 1, 1, 0));
+  const std::vector<double> later = {40.0, 41.0};
+  EXPECT_THAT(complaint_of([&] {
+                TruthPath(rows, "truth.csv", {.interpolate = true})
+                    .at({.shape = shape, .time = later}, "est.csv", use);
+              }),
+              HasSubstr("no estimate has a truth in truth.csv (40 to 41 s here, 0 to 32 s there)"));
 }
 
 class InnovationFiles : public testing::Test {
@@ -188,7 +224,7 @@ Names labels(const Names& estimates, const Names& truths = kTruths) {
   return found;
 }
 
-std::string complaint(const Names& estimates, const Names& truths = kTruths) {
+std::string refusal(const Names& estimates, const Names& truths = kTruths) {
   return complaint_of([&] { pair_files(estimates, truths, std::nullopt); });
 }
 
@@ -212,14 +248,14 @@ TEST(RunFiles, NameTheirEstimator) {
 }
 
 TEST(RunFiles, ThatDoNotFitAreNamed) {
-  EXPECT_THAT(complaint({"r/run_3/e.csv"}), HasSubstr("t/run_4/truth.csv: run 4 has no estimate"));
-  EXPECT_THAT(complaint({"r/run_3/e.csv", "r/run_4/e.csv", "r/run_5/e.csv"}),
+  EXPECT_THAT(refusal({"r/run_3/e.csv"}), HasSubstr("t/run_4/truth.csv: run 4 has no estimate"));
+  EXPECT_THAT(refusal({"r/run_3/e.csv", "r/run_4/e.csv", "r/run_5/e.csv"}),
               HasSubstr("r/run_5/e.csv: run 5 has no truth"));
-  EXPECT_THAT(complaint({"r/run_3/e.csv", "r/run_5/e.csv"}), HasSubstr("r/run_5/e.csv: runs 4"));
-  EXPECT_THAT(complaint({"a.csv", "b.csv"}), HasSubstr("a.csv: has no run number"));
-  EXPECT_THAT(complaint({"r/run_3.csv", "r/run_03.csv"}), HasSubstr("run 3 again"));
-  EXPECT_THAT(complaint({"a/run_3.csv", "a/run_4.csv", "b/run_3.csv"}), HasSubstr("run 4 has no"));
-  EXPECT_THAT(complaint({"a b/run_3.csv", "a b/run_4.csv"}), HasSubstr("cannot label a cell"));
+  EXPECT_THAT(refusal({"r/run_3/e.csv", "r/run_5/e.csv"}), HasSubstr("r/run_5/e.csv: runs 4"));
+  EXPECT_THAT(refusal({"a.csv", "b.csv"}), HasSubstr("a.csv: has no run number"));
+  EXPECT_THAT(refusal({"r/run_3.csv", "r/run_03.csv"}), HasSubstr("run 3 again"));
+  EXPECT_THAT(refusal({"a/run_3.csv", "a/run_4.csv", "b/run_3.csv"}), HasSubstr("run 4 has no"));
+  EXPECT_THAT(refusal({"a b/run_3.csv", "a b/run_4.csv"}), HasSubstr("cannot label a cell"));
 }
 
 TEST(PairFiles, GivesASingleTruthToAllRunsUnlessItIsOfOne) {
@@ -227,9 +263,9 @@ TEST(PairFiles, GivesASingleTruthToAllRunsUnlessItIsOfOne) {
   EXPECT_EQ(pair_files(estimates, {"truth.csv"}, std::nullopt).truth[1], "truth.csv");
   EXPECT_THAT(pair_files({"mine.csv"}, {"truth.csv"}, std::nullopt).runs, ElementsAre(0));
   EXPECT_EQ(pair_files(estimates, {"2026/truth.csv"}, std::nullopt).truth.size(), 2U);
-  EXPECT_THAT(complaint(estimates, {"t/run_0000/reference.csv"}), HasSubstr("has no truth"));
-  EXPECT_THAT(complaint(estimates, {"t/run_0001/reference.csv"}), HasSubstr("run 2 has no truth"));
-  EXPECT_THAT(complaint({"e/99999999999.csv", "e/2.csv"}), HasSubstr("has no run number"));
+  EXPECT_THAT(refusal(estimates, {"t/run_0000/reference.csv"}), HasSubstr("has no truth"));
+  EXPECT_THAT(refusal(estimates, {"t/run_0001/reference.csv"}), HasSubstr("run 2 has no truth"));
+  EXPECT_THAT(refusal({"e/99999999999.csv", "e/2.csv"}), HasSubstr("has no run number"));
   const JudgedFiles alone = pair_files({"mine.csv"}, {"t/run_0007/reference.csv"}, std::nullopt);
   EXPECT_EQ(alone.truth.size(), 1U);
 }

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/judging/truth_path.hpp"
+
+#include "engine/errors.hpp"
+#include "engine/numbers/angle.hpp"
+#include "experiments/judging/scan_clock.hpp"
+#include "experiments/text/words.hpp"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace montecarta::experiments {
+namespace {
+
+/// Interpolates from state `a` (`share` = 0) to state `b` (`share` = 1).
+Eigen::VectorXd between(const StateShape& shape, const Eigen::VectorXd& a, const Eigen::VectorXd& b,
+                        double share) {
+  Eigen::VectorXd state = a + share * (b - a);
+  for (Eigen::Index k = 0; k < state.size(); ++k) {
+    if (is_angle(shape, k)) state(k) = wrap(a(k) + share * wrap(b(k) - a(k)));
+  }
+  if (shape.kind == StateKind::pose_in_space) {
+    const Eigen::Quaterniond from(Eigen::Vector4d(a.segment<4>(kQuaternionPlace)));
+    const Eigen::Quaterniond to(Eigen::Vector4d(b.segment<4>(kQuaternionPlace)));
+    state.segment<4>(kQuaternionPlace) = from.slerp(share, to).coeffs();
+  }
+  return state;
+}
+
+/// [s] Times that differ by less are the same, whatever the tolerance is.
+constexpr double kSameTime = 1e-6;
+/// Gaps of the truth that are this many times as long as usual are no path.
+constexpr double kUsualGaps = 10.0;
+
+}  // namespace
+
+TruthPath::TruthPath(StateRows rows, std::filesystem::path path, const TimeMatch& match)
+    : rows_(std::move(rows)),
+      path_(std::move(path)),
+      match_(match),
+      longest_gap_(match.longest_gap.value_or(kUsualGaps * usual_spacing(rows_.time))) {}
+
+bool TruthPath::goes_on_at(double time) const {
+  return rows_.time.back() >= time - match_.tolerance;
+}
+
+/// The row of the truth nearest to `time`. Throws StudyError if it is farther away than the
+/// tolerance.
+std::size_t TruthPath::row_near(double time, const std::string& estimate) const {
+  const auto after = std::ranges::lower_bound(rows_.time, time);
+  auto row = static_cast<std::size_t>(after - rows_.time.begin());
+  if (row == rows_.time.size() ||
+      (row > 0 && time - rows_.time[row - 1] < rows_.time[row] - time)) {
+    --row;
+  }
+  const double mismatch = std::abs(rows_.time[row] - time);
+  if (mismatch <= match_.tolerance) return row;
+  const bool is_inside = rows_.time.front() < time && time < rows_.time.back();
+  throw StudyError(estimate + " has no truth in " + path_.string() + " (the nearest is " +
+                   to_text(mismatch) + " s away, --tolerance is " + to_text(match_.tolerance) +
+                   " s): " +
+                   (is_inside ? "give truths at the times of the estimates, or use --interpolate, "
+                                "or a larger --tolerance if times have few digits"
+                              : "leave out estimates outside of the truth, which --interpolate "
+                                "does, or use a larger --tolerance if times have few digits"));
+}
+
+/// The state between the two rows around `time`; nullopt, counted in `use`, if there are none or
+/// the gap between them is too long.
+std::optional<Eigen::VectorXd> TruthPath::interpolated(double time, const std::string& estimate,
+                                                       TruthUse& use) const {
+  const auto after = std::ranges::lower_bound(rows_.time, time);
+  const auto right = static_cast<std::size_t>(after - rows_.time.begin());
+  const bool has_left = right > 0, has_right = right < rows_.time.size();
+  if (has_right && rows_.time[right] - time <= kSameTime) return rows_.state[right];
+  if (has_left && time - rows_.time[right - 1] <= kSameTime) return rows_.state[right - 1];
+  if (!has_left || !has_right) {
+    if (use.outside++ == 0) use.first_outside = estimate;
+    return std::nullopt;
+  }
+  const double from = rows_.time[right - 1], to = rows_.time[right];
+  if (to - from > longest_gap_) {
+    if (use.in_gaps++ == 0) {
+      use.first_gap =
+          path_.string() + " has no row from " + to_text(from) + " to " + to_text(to) + " s";
+    }
+    return std::nullopt;
+  }
+  return between(rows_.shape, rows_.state[right - 1], rows_.state[right],
+                 (time - from) / (to - from));
+}
+
+std::vector<std::optional<Eigen::VectorXd>> TruthPath::at(const StateRows& estimates,
+                                                          const std::filesystem::path& path,
+                                                          TruthUse& use) const {
+  std::vector<std::optional<Eigen::VectorXd>> found;
+  std::optional<std::size_t> used;
+  for (const double time : estimates.time) {
+    const std::string estimate = path.string() + ": time " + to_text(time) + " s";
+    if (match_.interpolate) {
+      found.push_back(interpolated(time, estimate, use));
+      continue;
+    }
+    const std::size_t row = row_near(time, estimate);
+    if (used == row) {
+      throw StudyError(estimate + " and the time before have the same row of the truth (" +
+                       path_.string() + ", " + to_text(rows_.time[row]) +
+                       " s): use --interpolate, or a smaller --tolerance");
+    }
+    used = row;
+    const double mismatch = std::abs(rows_.time[row] - time);
+    if (mismatch > use.largest_mismatch) {
+      use.largest_mismatch = mismatch;
+      use.of_mismatch = estimate;
+    }
+    found.emplace_back(rows_.state[row]);
+  }
+  const bool has_any = std::ranges::any_of(found, [](const auto& one) { return one.has_value(); });
+  if (has_any || found.empty()) return found;
+  throw StudyError(path.string() + ": no estimate has a truth in " + path_.string() + " (" +
+                   to_text(estimates.time.front()) + " to " + to_text(estimates.time.back()) +
+                   " s here, " + to_text(rows_.time.front()) + " to " + to_text(rows_.time.back()) +
+                   " s there): give both the same clock");
+}
+
+std::vector<std::string> TruthUse::notes() const {
+  std::vector<std::string> all;
+  if (largest_mismatch > kSameTime) {
+    all.push_back("truths were taken up to " + to_text(largest_mismatch) + " s beside their " +
+                  "estimates (" + of_mismatch + "): --interpolate takes them at their times");
+  }
+  if (in_gaps > 0) {
+    all.push_back(std::to_string(in_gaps) +
+                  " estimates lie in gaps of the truth and are missing (" + first_gap +
+                  "): --longest-gap SECONDS sets what is interpolated");
+  }
+  if (outside > 0) {
+    all.push_back(std::to_string(outside) + " estimates lie before or after the truth and are " +
+                  "missing, the first in " + first_outside);
+  }
+  return all;
+}
+
+}  // namespace montecarta::experiments

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "experiments/judging/state_rows.hpp"
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace montecarta::experiments {
+
+/// The method that finds the truth at the time of an estimate.
+struct TimeMatch {
+  double tolerance = 1e-6;   ///< [s] largest difference of times that are the same
+  bool interpolate = false;  ///< whether to interpolate linearly, with angles the shorter way round
+  /// [s] Longest gap between two rows of the truth that is interpolated; nullopt: ten times the
+  /// usual spacing of the truth.
+  std::optional<double> longest_gap = {};
+};
+
+/// What was used of the truths, and what was left out.
+struct TruthUse {
+  double largest_mismatch = 0.0;   ///< [s] between an estimate and the row of the truth used
+  std::string of_mismatch = {};    ///< the estimate's file and time
+  std::uint64_t in_gaps = 0;       ///< number of estimates left out in gaps of a truth
+  std::string first_gap = {};      ///< the first such gap: file and times
+  std::uint64_t outside = 0;       ///< number of estimates left out before or after a truth
+  std::string first_outside = {};  ///< the first such estimate: file and time
+
+  /// Sentences on what is not as usual.
+  std::vector<std::string> notes() const;
+};
+
+/// The truth of one run.
+class TruthPath {
+ public:
+  /// Takes the rows of the file `path`.
+  TruthPath(StateRows rows, std::filesystem::path path, const TimeMatch& match);
+
+  /// {row} The truth at the times of the estimates in the file `path`. With `interpolate`, a row in
+  /// a gap of the truth, or before or after it, has none and is counted in `use`; without it, that
+  /// is an error. Throws StudyError that names both files, also if two estimates have the same
+  /// row of the truth, or if no estimate has a truth.
+  std::vector<std::optional<Eigen::VectorXd>> at(const StateRows& estimates,
+                                                 const std::filesystem::path& path,
+                                                 TruthUse& use) const;
+  /// Whether the truth goes on at `time` [s] or later.
+  bool goes_on_at(double time) const;
+
+ private:
+  std::optional<Eigen::VectorXd> interpolated(double time, const std::string& estimate,
+                                              TruthUse& use) const;
+  std::size_t row_near(double time, const std::string& estimate) const;
+
+  StateRows rows_;
+  std::filesystem::path path_;
+  TimeMatch match_;
+  double longest_gap_;
+};
+
+}  // namespace montecarta::experiments
