@@ -3,8 +3,7 @@
 scan, column} or `error` {run, scan, d}, `covariance` {run, scan, d, d}, `truth` {run, scan, column}
 or {scan, column}; optional `time` {scan} or {run, scan} and `names` {column}. NaN is missing.
 """
-import zipfile
-import zlib
+import os
 
 import conversion
 from conversion import ConversionError, np
@@ -25,10 +24,13 @@ class Arrays:
     @staticmethod
     def _npz(path):
         try:
-            with np.load(path, allow_pickle=False) as file:
-                return {name: file[name] for name in KNOWN if name in file}
-        except (ValueError, zipfile.BadZipFile, zlib.error, EOFError, TypeError,
-                AttributeError) as fault:
+            with open(path, "rb") as file:
+                stored = np.load(file, allow_pickle=False)
+                return {name: stored[name] for name in KNOWN if name in stored}
+        except Exception as fault:  # NumPy raises various errors for a damaged file
+            if isinstance(fault, OSError) and not os.access(path, os.R_OK):
+                raise ConversionError(f"{path}: cannot be opened ({fault.strerror}): check the "
+                                      "path and its permissions") from None
             raise ConversionError(f"{path}: is damaged or no .npz of numbers ({fault}): save it by "
                                   "numpy.savez, without objects") from None
 

@@ -134,7 +134,7 @@ def cnspy_element(name):
 
 def ros_element(name):
     found = re.fullmatch(r"(?:.*[./])?pose\.covariance[.\[_]?(\d+)\]?", name)
-    return found and divmod(int(found[1]), 6)
+    return found and int(found[1]) < 36 and divmod(int(found[1]), 6)
 
 
 def montecarta_element(name):
@@ -164,8 +164,15 @@ def family_in(table):
     """The family that names elements of a covariance, with {element: column}; None without one."""
     found = []
     for family in FAMILIES:
-        elements = {family.element(name): k for k, name in enumerate(table.names)
-                    if family.element(name)}
+        elements = {}
+        for k, name in enumerate(table.names):
+            element = family.element(name)
+            if element and element in elements:
+                raise ConversionError(f"{table.header_place}: '{table.written[k]}' and "
+                                      f"'{table.written[elements[element]]}' are the same element "
+                                      "of the covariance (one is needed): leave out the other")
+            if element:
+                elements[element] = k
         if elements:
             found.append((family, elements))
     if len(found) > 1:
@@ -239,7 +246,9 @@ def read_under_header(table, options):
         P, is_blocks = covariances_named(table, family, elements)
         if options.order and family.orders:
             refuse_order(table.header_place, options)
-        P = in_order(P, options)
+        if options.order:
+            P = in_order(P, options)
+            notes.append(order_note(options))
         if family.name == "OpenVINS":
             P = turned_into_map(poses, P)
             notes.append("the rotation's covariance is turned into the map: judge it by --error "
@@ -291,7 +300,7 @@ def read_without_header(table, options):
                               "the columns in a first line, such as t,tx,ty,tz,qx,qy,qz,qw")
     times, notes = seconds([row[0] for row in table.rows], table.places or [table.path], "",
                            options.time)
-    is_clock = bool(notes)
+    is_clock = bool(table.rows and notes)
     if is_clock and width == 8 and not options.quaternion:
         raise ConversionError(f"{table.places[0]}: 8 numbers without a header, times not in s (as "
                               "in EuRoC, where some programs write q_w first and others last): "

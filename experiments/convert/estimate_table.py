@@ -28,7 +28,8 @@ class Table:
         text = conversion.text_of(path).lstrip("\ufeff")
         for number, line in enumerate(text.splitlines(keepends=True), 1):
             self._add_line(line, f"{path}:{number}")
-        if not (self.rows or self.names or self.declared or self.begins_with_timestamp):
+        if not (self.rows or self.names or "FORMAT" in self.declared or
+                self.begins_with_timestamp):
             raise ConversionError(f"{path}: no rows (only a file with a header may have none, of a "
                                   "run that failed): write one row for each time")
 
@@ -149,10 +150,13 @@ def pose_name(name):
 def seconds(words, places, unit, given):
     """Exact times in seconds and a note if they were in another unit. `unit` is that of the header,
     `given` that of --time."""
+    times = []
     for word, place in zip(words, places):
-        if conversion.finite_number(word) is None:
-            raise ConversionError(f"{place}: time '{word[:40]}' is no finite number: correct it")
-    times = list(map(Decimal, words))
+        value = conversion.finite_number(word)
+        if value is None or abs(value) > 1e30 or not (value == 0 or abs(value) > 1e-30):
+            raise ConversionError(f"{place}: '{word[:40]}' is no time (a finite number): correct "
+                                  "it")
+        times.append(Decimal(word) if value else Decimal(0))
     largest = max(map(abs, times), default=0)
     steps = sorted(b - a for a, b in zip(times, times[1:]))
     by_size = ("ns" if largest >= 10**17 else "us" if largest >= 10**14 else

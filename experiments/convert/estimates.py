@@ -13,6 +13,7 @@ before one is written. See experiments/JUDGING_ESTIMATES.md.
 """
 import dataclasses
 import os
+import re
 import sys
 
 import conversion
@@ -142,6 +143,14 @@ def outputs(arguments):
     return found
 
 
+def run_number(path):
+    """The number at the end of a file's name or, without one, of its innermost folder that ends
+    with one; None without any. `montecarta judge` pairs runs by it."""
+    names = os.path.splitext(os.path.abspath(path))[0].split(os.sep)
+    numbers = [re.search(r"(\d+)$", name) for name in reversed(names)]
+    return next((int(found[1]) for found in numbers if found), None)
+
+
 def with_alignment(found, arguments):
     """The outputs under --align yaw. One truth may be that of all estimates: then it becomes a
     truth for each."""
@@ -159,6 +168,10 @@ def with_alignment(found, arguments):
     if len(found) != len(onto):
         raise ConversionError(f"--onto: {len(onto)} estimates of {len(found)} truths (each truth "
                               "is moved onto its own, in the same order): name as many")
+    for (_, run), estimate in zip(found, onto):
+        if len(arguments.files) > 1 and run_number(run.path) != run_number(estimate.path):
+            raise ConversionError(f"--onto: {estimate.path} is no estimate of {run.path} (the "
+                                  "numbers of the runs differ): name both in the same order")
     return [(path, aligned(run, estimate)) for (path, run), estimate in zip(found, onto)]
 
 
@@ -213,6 +226,10 @@ def convert(arguments):
     if bool(arguments.align and arguments.kind == "truth") != bool(arguments.onto):
         raise ConversionError("--align yaw and --onto belong together for truths (a truth is moved "
                               "onto the first estimate of its run): name the estimates by --onto")
+    if arguments.output and os.path.exists(arguments.output) and not os.path.isdir(
+            arguments.output):
+        raise ConversionError(f"{arguments.output}: is no folder (the results are files in it): "
+                              "name a folder by -o FOLDER")
     found = outputs(arguments)
     if arguments.align:
         found = with_alignment(found, arguments)

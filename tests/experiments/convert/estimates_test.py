@@ -8,6 +8,7 @@ import unittest
 from scripts import Scripts, np, savemat
 
 import estimates
+from conversion import ConversionError
 
 QUATERNION = np.array([-0.3, 0.7, 0.2, 0.5]) / np.linalg.norm([-0.3, 0.7, 0.2, 0.5])
 POSE = [1.0, 2.0, 3.0, *QUATERNION]
@@ -193,12 +194,12 @@ class Layouts(Estimates):
         self.expect(ROS + line, WHOLE, "ROS", "--error world", "in ns")
         dotted = ROS.replace("field.", "").replace("%time,header.seq,header.stamp",
                                                    "Time,header.stamp.secs,header.stamp.nsecs")
-        line = comma(9, 1, 500000000, "odom", POSE, WHOLE, -1)
+        line = comma(9, 1, 5000000, "odom", POSE, WHOLE, -1)
         for brackets in ("pose.covariance[{}]", "pose.covariance_{}"):
             header = dotted
             for k in reversed(range(36)):
                 header = header.replace(f",pose.covariance{k},", f",{brackets.format(k)},")
-            self.expect(header + line, WHOLE, "ROS")
+            self.expect(header + line, WHOLE, "ROS", time="1.005")
         self.expect_refusal(ROS.replace("position.z", "position.q") + line, "e.txt:1",
                             "no column z")
 
@@ -367,8 +368,11 @@ class Files(Estimates):
 
     def test_a_csv_file_needs_a_folder(self):
         self.write("e.csv", CNSPY_WHOLE + comma(1.5, POSE, WHOLE[UPPER]))
-        self.expect_refused(estimates, ("e.csv", "-o FOLDER"), kind="estimate",
+        self.expect_refused(estimates, ("ends with .csv", "-o FOLDER"), kind="estimate",
                             files=[self.path("e.csv")])
+        with self.assertRaisesRegex(ConversionError, "e.csv: is no folder"):
+            self.converted(estimates, kind="estimate", files=[self.path("e.csv")],
+                           output=self.path("e.csv"))
 
 
 class Alignment(Estimates):
@@ -403,6 +407,14 @@ class Alignment(Estimates):
         self.assertEqual([one[0] for one in self.rows("e.csv")], ["0.5", "1"])
         self.assertNotIn("not near 0", self.said)
 
+    def test_interpolates_the_truth_at_the_first_estimate(self):
+        self.write("t.txt", TUM + row(0, 0, 0, 0, 0, 0, 0, 1) + row(1, 4, 0, 0, 0, 0, 0, -1))
+        self.write("e.txt", row(0.25, 5, 6, 7, 0, 0, 0, 1, WHOLE))
+        self.converted(estimates, kind="truth", files=[self.path("t.txt")], align="yaw",
+                       onto=[self.path("e.txt")])
+        np.testing.assert_allclose(np.array(self.rows("t.csv"), dtype=float)[:, :4],
+                                   [[0, 4, 6, 7], [1, 8, 6, 7]], atol=1e-12)
+
     def test_of_one_truth_makes_one_for_each_estimate(self):
         with open(self.path("e.txt"), encoding="utf-8") as file:
             late = file.read().split("\n", 1)[1]
@@ -420,6 +432,12 @@ class Alignment(Estimates):
     def test_is_refused_without_a_partner(self):
         self.expect_refused(estimates, ("--onto",), kind="truth", files=[self.path("t.txt")],
                             align="yaw")
+        for name in ("t_1.txt", "t_2.txt", "e_1.txt", "e_2.txt"):
+            with open(self.path(name[0] + ".txt"), encoding="utf-8") as file:
+                self.write(name, file.read())
+        self.expect_refused(estimates, ("e_2.txt", "t_1.txt"), kind="truth", align="yaw",
+                            files=[self.path("t_1.txt"), self.path("t_2.txt")],
+                            onto=[self.path("e_2.txt"), self.path("e_1.txt")])
         self.write("e.txt", row(9.5, POSE, WHOLE))
         self.expect_refused(estimates, ("t.txt", "9.5 s", "same run"), kind="truth", align="yaw",
                             files=[self.path("t.txt")], onto=[self.path("e.txt")])
