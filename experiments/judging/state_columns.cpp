@@ -46,8 +46,8 @@ void check_header(const Names& header, const std::string& place) {
   if (header.front() != kTimeColumn) {
     throw StudyError(place + ": '" + excerpt(header.front()) +
                      "' is not the first column (times come first): begin the header with time_s, "
-                     "or convert a trajectory by "
-                     "experiments/convert/trajectory.py");
+                     "or convert the file by "
+                     "experiments/convert/estimates.py");
   }
   for (std::size_t i = 0; i < header.size(); ++i) {
     if (header[i].empty() || place_of_name(header, header[i]) != i) {
