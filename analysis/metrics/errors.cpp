@@ -3,27 +3,38 @@
 #include "analysis/run/measured_run.hpp"
 #include "analysis/study/cell_report.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <span>
 #include <string>
 #include <vector>
 
 namespace montecarta::analysis {
 namespace {
 
-double mean_of_roots(const std::vector<double>& squares) {
-  if (squares.empty()) return kNaN;
-  double sum = 0.0;
-  for (const double square : squares) sum += std::sqrt(square);
-  return sum / static_cast<double>(squares.size());
+/// Mean over the scans of a run. Of imported estimates some may be missing; of our own filters a
+/// mean with an estimate that is not finite is none.
+double over_scans(const MeasuredRun& run, std::span<const double> values) {
+  return run.rows.error.components() > 0 ? mean_of_finite(values) : mean_of(values);
 }
 
-double position_mse(const MeasuredRun& run) { return mean_of(run.metrics.squared_position()); }
+double mean_root(const MeasuredRun& run, std::span<const double> squares) {
+  std::vector<double> roots(squares.size());
+  std::ranges::transform(squares, roots.begin(), [](double square) { return std::sqrt(square); });
+  return over_scans(run, roots);
+}
+
+double position_mse(const MeasuredRun& run) {
+  return over_scans(run, run.metrics.squared_position());
+}
 
 double position_mean(const MeasuredRun& run) {
-  return mean_of_roots(run.metrics.squared_position());
+  return mean_root(run, run.metrics.squared_position());
 }
 
-double heading_mse(const MeasuredRun& run) { return mean_of(run.metrics.squared_heading()); }
+double heading_mse(const MeasuredRun& run) {
+  return over_scans(run, run.metrics.squared_heading());
+}
 
 constexpr Score kErrorsScores[] = {
     {"position_rmse", "m", "position RMSE",
@@ -39,7 +50,7 @@ constexpr Score kErrorsScores[] = {
      [](const MeasuredRun& run) { return std::sqrt(heading_mse(run)); }},
     {"heading_mse", "rad2", "heading MSE", heading_mse},
     {"heading_error", "rad", "mean absolute heading error",
-     [](const MeasuredRun& run) { return mean_of_roots(run.metrics.squared_heading()); }},
+     [](const MeasuredRun& run) { return mean_root(run, run.metrics.squared_heading()); }},
 };
 
 constexpr ScanSeries kErrorsSeries[] = {

@@ -56,14 +56,17 @@ void put_rows(const Eigen::MatrixXd& matrix, std::size_t scan, std::span<double>
   }
 }
 
-/// Marks a run as complete, or as failed if it ends although its truth goes on. If runs have clocks
-/// of their own, only a run without estimates is known to have failed.
+/// Marks a run as complete, or as failed if it ends although other runs and its truth go on. If
+/// runs have clocks of their own, only a run without estimates is known to have failed.
 void end_run(const MatchedRows& run, const TruthPath& truth, const ScanClock& clock,
              RunRecord& record) {
   constexpr double kUnknownCost = std::numeric_limits<double>::quiet_NaN();
   const std::size_t next = run.scans.empty() ? 0 : run.scans.back() + 1;
-  const bool is_failed = run.scans.empty() || (clock.is_common() && next < clock.times().size() &&
-                                               truth.goes_on_at(clock.times()[next]));
+  const auto goes_on = [&] {
+    const double wanted = run.rows.time.back() + 0.9 * clock.period();
+    return clock.is_common() && clock.times().back() >= wanted && truth.goes_on_at(wanted);
+  };
+  const bool is_failed = run.scans.empty() || goes_on();
   if (!is_failed) return record.mark_complete(kUnknownCost);
   const std::string reason = run.scans.empty()
                                  ? "no estimates"

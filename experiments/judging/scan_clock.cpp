@@ -8,6 +8,9 @@
 namespace montecarta::experiments {
 namespace {
 
+/// Files share their times if these make at most this many times the scans of the longest file.
+constexpr double kMostScans = 1.5;
+
 std::vector<double> spacings(std::span<const double> times) {
   std::vector<double> found(times.size());
   std::adjacent_difference(times.begin(), times.end(), found.begin());
@@ -21,15 +24,14 @@ ScanClock::ScanClock(std::span<const std::vector<double>> files, double toleranc
   std::vector<double> all;
   for (const std::vector<double>& times : files) all.insert(all.end(), times.begin(), times.end());
   std::ranges::sort(all);
-  std::size_t alone = 0;
-  for (std::size_t i = 0, end = 0; i < all.size(); i = end) {
-    while (end < all.size() && all[end] <= all[i] + 2.0 * tolerance) ++end;
-    first_.push_back(all[i]);
-    if (end - i == 1) ++alone;
+  for (const double time : all) {
+    if (first_.empty() || time > first_.back() + 2.0 * tolerance) first_.push_back(time);
   }
   const std::vector<double>& longest =
       *std::ranges::max_element(files, {}, [](const auto& times) { return times.size(); });
-  is_common_ = files.size() == 1 || 2 * alone <= all.size();
+  is_common_ =
+      static_cast<double>(first_.size()) <= kMostScans * static_cast<double>(longest.size());
+  period_ = usual_spacing(longest);
   if (!is_common_) first_.clear();
   times_ = is_common_ ? first_ : longest;
   if (!is_common_) return;

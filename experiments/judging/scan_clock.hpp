@@ -11,13 +11,14 @@ namespace montecarta::experiments {
 class ScanClock {
  public:
   /// Takes the times [s] {file}{row} of all files, increasing in each. Times within `tolerance` [s]
-  /// of each other are one scan. If most rows share their time with a row of another file, the
-  /// scans are all times that occur. Otherwise runs have clocks of their own, and row k of each is
-  /// scan k.
+  /// of each other are one scan, and the scans are all times that occur. If that makes many more
+  /// scans than any file has rows, runs have clocks of their own, and row k of each is scan k.
   ScanClock(std::span<const std::vector<double>> files, double tolerance);
 
   /// {scan} Times [s]; where the file with the most rows has the scan, its own.
   const std::vector<double>& times() const { return times_; }
+  /// Usual time [s] between two scans of the longest file.
+  double period() const { return period_; }
   /// Whether the files share their times.
   bool is_common() const { return is_common_; }
   /// {row} The scans of rows with these times, increasing.
@@ -26,6 +27,7 @@ class ScanClock {
  private:
   std::vector<double> first_;  ///< {scan} earliest time of the scan; empty without common times
   std::vector<double> times_;
+  double period_;
   bool is_common_ = true;
 };
 

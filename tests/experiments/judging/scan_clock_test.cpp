@@ -38,6 +38,11 @@ TEST(ScanClock, CountsTheRowsOfRunsWithClocksOfTheirOwn) {
   EXPECT_THAT(clock.scans_of(files[1]), ElementsAre(0, 1, 2));
 }
 
+TEST(ScanClock, CountsRowsIfTwoClocksTakeTurns) {
+  const Files files = {{0.0, 1.0, 2.0}, {0.4, 1.4, 2.4}, {0.0, 1.0, 2.0}, {0.4, 1.4, 2.4}};
+  EXPECT_FALSE(ScanClock(files, 1e-6).is_common());
+}
+
 TEST(ScanClock, IsThatOfASingleFile) {
   const Files files = {{0.1, 0.7}};
   EXPECT_TRUE(ScanClock(files, 1e-6).is_common());
