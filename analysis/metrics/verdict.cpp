@@ -43,6 +43,11 @@ class VerdictOverRuns final : public MergedSums<VerdictOverRuns> {
                                    .share_of_runs = criteria_->share_of_runs};
     cell.verdict =
         judge(*sums_, {criteria_->components, criteria_->times}, analysis, ended, cell.complete);
+    const double lengths = sums_->drive_that_decides(level, criteria_->within);
+    if (!std::isnan(lengths)) {
+      cell.verdict.drive_that_decides =
+          lengths * (criteria_->times.back() - criteria_->times.front());
+    }
     const NeesSeries& series = cell.nees.front().series;
     cell.verdict.samples = series.samples;
     cell.verdict.unusable = series.unusable;

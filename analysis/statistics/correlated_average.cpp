@@ -298,6 +298,30 @@ double end_ratio(double samples, double d, double tail) {
   return ratio_where(probability, tail, 1.0) * largest_by_chance(d * samples, tail);
 }
 
+/// The average of the drives without its interval.
+CorrelatedAverage average_of(std::span<const VectorSeries> drives) {
+  expect(!drives.empty() && !drives.front().empty() && !drives.front().front().empty(),
+         "there is a drive, and a series has components and samples");
+  const auto d = static_cast<double>(drives.front().size());
+  const auto count = static_cast<double>(drives.size());
+  CorrelatedAverage result;
+  double inverse = 0.0;  // sum over drives of 1 / effective samples
+  for (const VectorSeries& errors : drives) {
+    const SquareMoments nees = moments_of_nees(errors);
+    result.mean += nees.mean / d / count;
+    inverse += 1.0 / effective_samples_of(errors, nees);
+  }
+  result.effective_samples = count * count / inverse;
+  return result;
+}
+
+/// {drive} Semivariances of the errors.
+std::vector<VectorSeries> variograms_of(std::span<const VectorSeries> drives) {
+  std::vector<VectorSeries> variograms;
+  for (const VectorSeries& errors : drives) variograms.push_back(semivariances(errors));
+  return variograms;
+}
+
 }  // namespace
 
 double probability_below(std::span<const WeightedSquares> terms, double x) {
@@ -317,29 +341,28 @@ CorrelatedAverage correlated_average(const VectorSeries& errors, double level) {
 }
 
 CorrelatedAverage correlated_average(std::span<const VectorSeries> drives, double level) {
-  expect(!drives.empty() && !drives.front().empty() && !drives.front().front().empty(),
-         "there is a drive, and a series has components and samples");
   nees_bounds(1, 1, level);  // throws if the level is wrong
   const double tail = 0.5 * (1.0 - level);
-  const auto d = static_cast<double>(drives.front().size());
-  const auto count = static_cast<double>(drives.size());
-  CorrelatedAverage result;
-  double inverse = 0.0;  // sum over drives of 1 / effective samples
-  for (const VectorSeries& errors : drives) {
-    const SquareMoments nees = moments_of_nees(errors);
-    result.mean += nees.mean / d / count;
-    inverse += 1.0 / effective_samples_of(errors, nees);
-  }
-  result.effective_samples = count * count / inverse;
+  CorrelatedAverage result = average_of(drives);
   if (result.mean == 0.0) return result;
-  std::vector<VectorSeries> variograms;
-  for (const VectorSeries& errors : drives) variograms.push_back(semivariances(errors));
+  const auto d = static_cast<double>(drives.front().size());
+  const std::vector<VectorSeries> variograms = variograms_of(drives);
   const auto probability = [&](double ratio) {
     return probability_of_less(variograms, result.mean, ratio);
   };
   result.ratio = {result.mean / largest_by_chance(d * result.effective_samples, tail),
                   ratio_where(probability, tail, result.mean)};
   return result;
+}
+
+double p_value_of_one(std::span<const VectorSeries> drives) {
+  const CorrelatedAverage found = average_of(drives);
+  if (found.mean == 0.0) return 1.0;
+  const double freedom = static_cast<double>(drives.front().size()) * found.effective_samples;
+  const double tail = found.mean >= 1.0
+                          ? chi_squared_tail(found.mean * freedom, freedom)
+                          : probability_of_less(variograms_of(drives), found.mean, 1.0);
+  return std::min(1.0, 2.0 * tail);
 }
 
 double samples_that_decide(std::size_t dimension, double level, double within) {

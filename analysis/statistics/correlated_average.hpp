@@ -65,6 +65,10 @@ CorrelatedAverage correlated_average(const VectorSeries& errors, double level);
 /// components. Drives of all lengths count alike.
 CorrelatedAverage correlated_average(std::span<const VectorSeries> drives, double level);
 
+/// Two-sided p-value of the hypothesis that the expected average of these drives is 1: the level
+/// 1 - p is the largest at which the interval excludes it.
+double p_value_of_one(std::span<const VectorSeries> drives);
+
 /// Number of effective samples at which the ratio of the interval's ends is at most `within`: the
 /// interval then excludes 1 or lies in [1 / within, within]. Infinite if it is more than 1e9.
 double samples_that_decide(std::size_t dimension, double level, double within);

@@ -390,7 +390,9 @@ std::string within_words(const Verdict& verdict) {
 /// Text of the further runs needed: "about 130 more runs decide".
 std::string more_runs_words(const Verdict& verdict) {
   if (complete_runs(verdict) < kFewestRunsOfAPlan) {
-    return "take at least " + std::to_string(kFewestRunsOfAPlan) + " runs";
+    const std::string runs = "take at least " + std::to_string(kFewestRunsOfAPlan) + " runs";
+    const double drive = verdict.drive_that_decides.value_or(kNaN);
+    return std::isfinite(drive) ? runs + ", or a drive of " + duration_text(drive) : runs;
   }
   if (!verdict.more_runs) return "many more runs decide";
   return "about " + std::to_string(*verdict.more_runs) + " more runs decide";
@@ -442,7 +444,19 @@ std::string not_judged(const Verdict& verdict) {
   return has_correlations ? "" : "; correlations were not judged";
 }
 
+/// Text of what few runs do not show; empty if there are enough runs to judge everything.
+std::string few_runs_words(const Verdict& verdict) {
+  if (complete_runs(verdict) >= kFewestJudgedRuns) return "";
+  const std::string fewer = "of fewer than " + std::to_string(kFewestJudgedRuns) + " runs ";
+  if (verdict.find(Family::size) == nullptr) return fewer + "single scans alone are judged";
+  return fewer + "bias, correlations and stretches of the drive are not judged";
+}
+
 std::string consistent_words(const Verdict& verdict) {
+  if (!few_runs_words(verdict).empty()) {
+    return within_words(verdict) + " along the drive" + slight_words(verdict) + "; " +
+           few_runs_words(verdict);
+  }
   const std::string tails = tail_words(verdict);
   return within_words(verdict) + judged_parts(verdict) + slight_words(verdict) +
          not_judged(verdict) + "; " +
@@ -451,27 +465,20 @@ std::string consistent_words(const Verdict& verdict) {
                         : tails);
 }
 
-/// Text that says that only single scans are judged; empty if there are enough runs to judge more.
-std::string scans_alone_words(const Verdict& verdict) {
-  if (complete_runs(verdict) >= kFewestJudgedRuns) return "";
-  return "of fewer than " + std::to_string(kFewestJudgedRuns) +
-         " runs single scans alone are judged";
-}
-
 std::string undecided_words(const Verdict& verdict) {
   const std::uint64_t runs = complete_runs(verdict);
   const std::string words = "undecided: " + std::to_string(runs) +
                             (runs == 1 ? " run does" : " runs do") + " not show whether it is " +
                             within_words(verdict);
-  return joined({words, scans_alone_words(verdict), more_runs_words(verdict), tail_words(verdict)});
+  return joined({words, few_runs_words(verdict), more_runs_words(verdict), tail_words(verdict)});
 }
 
 /// Text of the findings of the tests.
 std::string tested_words(const Verdict& verdict) {
   const std::string slightly = is_slight(verdict) ? "slightly " : "";
-  const std::string scans = scans_alone_words(verdict);
+  const std::string few = few_runs_words(verdict);
   const std::string open =
-      (scans.empty() ? "" : "; " + scans) + (is_slight(verdict) ? "; " + open_words(verdict) : "");
+      (few.empty() ? "" : "; " + few) + (is_slight(verdict) ? "; " + open_words(verdict) : "");
   switch (verdict.of_tests) {
     case Answer::consistent:
       return consistent_words(verdict);

@@ -43,8 +43,8 @@ inline constexpr std::array kFamilies = {Family::size,
                                          Family::between_runs,
                                          Family::tails};
 
-/// The fewest complete runs for all tests. Studies of fewer runs are judged by single scans alone,
-/// since a few runs do not show how much runs vary.
+/// The fewest complete runs for all tests. A few runs do not show how much runs vary: studies of
+/// fewer are judged by single scans, and by size and components along their drives.
 inline constexpr std::size_t kFewestJudgedRuns = 3;
 
 /// The fewest runs from which the number of further runs is predicted. For fewer the intervals
@@ -160,6 +160,9 @@ struct Verdict {
   std::uint64_t unusable = 0;  ///< number of samples without a finite error or a covariance matrix
   std::uint64_t missing = 0;   ///< number of scans of complete runs without an estimate
   std::optional<std::uint64_t> more_runs = {};  ///< number of further runs that decide, if known
+  /// [s] Length of a drive that decides, in a study of fewer than kFewestJudgedRuns runs whose
+  /// errors forget as those of this one do; infinite if none would.
+  std::optional<double> drive_that_decides = {};
   /// Whether a deviation is shown to be beyond the margin, at `level` for all tests together: only
   /// then is the filter refused. A deviation within the margin is called slight.
   bool is_refused = false;

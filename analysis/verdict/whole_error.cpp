@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <utility>
 
@@ -107,6 +108,7 @@ void WholeError::add(const WhitenedRun& run, std::span<const double> nees) {
   add_components(run);
   add_fingerprint(run);
   if (std::ranges::all_of(run.whitened, [](double u) { return std::isnan(u); })) return;
+  along_.add(run);
   add_correlations(run);
   groups_.add(run.whitened);
   if (!has_pairs() && whitened_.size() < most_kept_runs()) whitened_.push_back(run.whitened);
@@ -307,7 +309,10 @@ void WholeError::add_largest_test(const ErrorNames& names, std::vector<MemberTes
 
 std::vector<FamilyTest> WholeError::families(double level, const ErrorNames& names) const {
   std::vector<MemberTest> all = nees_.scan_tests(names.times);
-  if (nees_.ratios().n < kFewestJudgedRuns) return judge_tests(std::move(all), level);
+  if (nees_.ratios().n < kFewestJudgedRuns) {
+    std::ranges::move(along_.tests(names.components), std::back_inserter(all));
+    return judge_tests(std::move(all), level);
+  }
   all.push_back(nees_.size_test());
   add_stretch_tests(names, all);
   const auto squares = [](Member member, const Summary& runs, std::size_t) {
@@ -328,6 +333,10 @@ std::vector<FamilyTest> WholeError::families(double level, const ErrorNames& nam
 
 std::optional<Side> WholeError::refused_by_bets(double margin, double level) const {
   return refused_side(bets_, margin, level);
+}
+
+double WholeError::drive_that_decides(double level, double within) const {
+  return nees_.ratios().n < kFewestJudgedRuns ? along_.length_that_decides(level, within) : kNaN;
 }
 
 BesideTests WholeError::beside_tests(const ErrorNames& names) const {

@@ -3,6 +3,7 @@
 
 #include "analysis/run/whitened_run.hpp"
 #include "analysis/statistics/spread.hpp"
+#include "analysis/verdict/along_drive.hpp"
 #include "analysis/verdict/bets.hpp"
 #include "analysis/verdict/run_groups.hpp"
 #include "analysis/verdict/summed_error.hpp"
@@ -56,21 +57,26 @@ class WholeError {
 
   /// Adds one run with its NEES {scan}, which is NaN where it is not judged.
   void add(const WhitenedRun& run, std::span<const double> nees);
-  /// The families that apply, judged together at `level`; only the scans for fewer than
-  /// kFewestJudgedRuns runs.
+  /// The families that apply, judged together at `level`. Those of fewer than kFewestJudgedRuns
+  /// runs are the scans, and size and components along the drives.
   std::vector<FamilyTest> families(double level, const ErrorNames& names) const;
   /// The side of the margin on which bets on the ratios of runs refuse the filter (STATISTICS 18).
   std::optional<Side> refused_by_bets(double margin, double level) const;
   /// Findings that are in no test.
   BesideTests beside_tests(const ErrorNames& names) const;
+  /// See AlongDrive; NaN if there are enough runs.
+  double drive_that_decides(double level, double within) const;
   static constexpr auto parts() {
     using Sums = WholeError;
-    return std::tuple(settings(&Sums::dimension_, &Sums::ends_),
-                      added(&Sums::nees_, &Sums::stretch_, &Sums::against_run_, &Sums::component_,
-                            &Sums::bias_, &Sums::correlation_, &Sums::whitened_mean_,
-                            &Sums::groups_, &Sums::largest_, &Sums::exact_, &Sums::bets_),
-                      appended(&Sums::fingerprints_, &Sums::numbers_),
-                      appended_up_to(&Sums::most_kept_runs, &Sums::whitened_));
+    return std::tuple(
+        settings(&Sums::dimension_, &Sums::ends_),
+        added(&Sums::nees_, &Sums::stretch_, &Sums::against_run_, &Sums::component_, &Sums::bias_,
+              &Sums::correlation_, &Sums::whitened_mean_, &Sums::groups_, &Sums::largest_,
+              &Sums::exact_, &Sums::bets_),
+        appended(&Sums::fingerprints_, &Sums::numbers_),
+        appended_up_to(&Sums::most_kept_runs, &Sums::whitened_),
+        // Merged, and not stored: sums are of many runs.
+        Part{[](Sums& sums, Sums& next) { sums.along_.merge(next.along_); }, std::tuple()});
   }
 
  private:
@@ -138,6 +144,7 @@ class WholeError {
   RunGroups groups_;
   /// {family}{member} bets on the size, on each component and on each stretch.
   std::vector<std::vector<Bets>> bets_;
+  AlongDrive along_;
   Largest largest_;
   std::vector<Maximum> exact_;  ///< {component} largest error where the deviation is 0
   /// {run} fingerprint of the errors of a run, and number of that run.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/runs/progress.hpp"
 
+#include "engine/text/number_text.hpp"
 #include "engine/text/wrapped_text.hpp"
 
 #include <algorithm>
@@ -44,19 +45,6 @@ RunCounts& RunCounts::operator+=(const RunCounts& other) {
   complete += other.complete, failed += other.failed;
   missing += other.missing, not_needed += other.not_needed;
   return *this;
-}
-
-std::string duration_text(double seconds) {
-  const double tenths = std::ceil(10.0 * seconds);
-  if (tenths < 100.0) return print("%.1f s", tenths / 10.0);
-  const double whole = std::ceil(seconds);
-  if (whole < 60.0) return print("%.0f s", whole);
-  const auto in_60ths = [](double fine) {
-    return print("%.0f:%02.0f", std::floor(fine / 60.0), std::fmod(fine, 60.0));
-  };
-  if (whole < 3600.0) return in_60ths(whole) + " min";
-  if (whole < 48.0 * 3600.0) return in_60ths(std::ceil(whole / 60.0)) + " h";
-  return print("%.1f d", whole / 86400.0);
 }
 
 std::string progress_line(const RunCounts& counts, std::uint64_t earlier, double seconds) {

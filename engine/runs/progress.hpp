@@ -38,10 +38,6 @@ struct RunCounts {
   RunCounts& operator+=(const RunCounts& other);
 };
 
-/// A duration in at most 8 characters, rounded up below two days: "4.2 s", "12 s", "3:05 min",
-/// "12:40 h", "3.4 d".
-std::string duration_text(double seconds);
-
 /// A line of progress after `seconds` of this session, before which `earlier` runs had ended: " 45
 /// %  1350/3000 runs, 2 failed, 85.2/s, 19 s left".
 std::string progress_line(const RunCounts& counts, std::uint64_t earlier, double seconds);

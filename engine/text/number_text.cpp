@@ -57,6 +57,21 @@ std::string with_error_to(int decimals, double mean, double standard_error) {
 
 std::string fixed_seconds(double time) { return printed("%.*f", 1, time) + " s"; }
 
+std::string duration_text(double seconds) {
+  const double tenths = std::ceil(10.0 * seconds);
+  if (tenths < 100.0) return printed("%.*f s", 1, tenths / 10.0);
+  const double whole = std::ceil(seconds);
+  if (whole < 60.0) return printed("%.*f s", 0, whole);
+  const auto in_60ths = [](double fine) {
+    const double rest = std::fmod(fine, 60.0);
+    return printed("%.*f:", 0, std::floor(fine / 60.0)) + (rest < 10.0 ? "0" : "") +
+           printed("%.*f", 0, rest);
+  };
+  if (whole < 3600.0) return in_60ths(whole) + " min";
+  if (whole < 48.0 * 3600.0) return in_60ths(std::ceil(whole / 60.0)) + " h";
+  return printed("%.*f d", 1, whole / 86400.0);
+}
+
 std::string exact_text(double value) {
   if (std::isnan(value)) return "nan";
   std::array<char, 64> text{};

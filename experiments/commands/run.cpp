@@ -7,6 +7,7 @@
 #include "engine/records/result_file.hpp"
 #include "engine/runs/monte_carlo.hpp"
 #include "engine/runs/progress.hpp"
+#include "engine/text/number_text.hpp"
 #include "engine/text/visible_text.hpp"
 #include "engine/text/wrapped_text.hpp"
 #include "engine/threads/thread_budget.hpp"

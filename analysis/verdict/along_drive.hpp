@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/run/whitened_run.hpp"
+#include "analysis/statistics/correlated_average.hpp"
+#include "analysis/verdict/verdict.hpp"
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace montecarta::analysis {
+
+/// Keeps the errors of a study of fewer than kFewestJudgedRuns runs, and tests them along their
+/// drives (STATISTICS 20), which show as much as the errors forget.
+class AlongDrive {
+ public:
+  void add(const WhitenedRun& run);
+  void merge(AlongDrive& next);
+  /// Number of runs with errors; those of kFewestJudgedRuns runs and more are not kept.
+  std::size_t runs() const { return runs_; }
+  /// The families of size and, of several components, of components; empty without errors.
+  std::vector<MemberTest> tests(std::span<const std::string> components) const;
+  /// Number of times that a drive must be as long as these, with errors of the same memory, so that
+  /// the size is shown to be within the margin or beyond it. NaN without errors; may be infinite.
+  double length_that_decides(double level, double within) const;
+
+ private:
+  void forget_if_enough();
+
+  std::size_t runs_ = 0;
+  /// {run}{component}{scan} Errors in units of their covariance, without scans that have none.
+  std::vector<VectorSeries> whitened_;
+  /// {component}{run}{scan} Errors in units of the component's own deviation, likewise.
+  std::vector<VectorSeries> standardised_;
+};
+
+}  // namespace montecarta::analysis
