@@ -7,10 +7,13 @@
 #include "engine/records/posix_file.hpp"
 #include "experiments/files/files.hpp"
 #include "experiments/judging/innovation_rows.hpp"
+#include "experiments/judging/likely_mistakes.hpp"
+#include "experiments/judging/time_units.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <memory>
 #include <numeric>
 #include <system_error>
@@ -118,8 +121,8 @@ struct LongestRun {
   StateRows rows;
 };
 
-StateRows read_with_innovations(const fs::path& path, double tolerance) {
-  StateRows rows = read_estimates(path);
+StateRows read_with_innovations(const fs::path& path, double tolerance, EqualTimes equal_times) {
+  StateRows rows = read_estimates(path, equal_times);
   if (const auto beside = innovations_beside(path)) {
     read_innovations(*beside, path, tolerance, rows);
   }
@@ -127,18 +130,18 @@ StateRows read_with_innovations(const fs::path& path, double tolerance) {
 }
 
 /// Reads only the file with the most lines; the others are read when their runs are written.
-LongestRun longest_of(const JudgedFiles& files, double tolerance) {
+LongestRun longest_of(const JudgedFiles& files, double tolerance, EqualTimes equal_times) {
   fs::path longest;
   std::size_t most = 0;
   for (const EstimatorFiles& cell : files.cells) {
     for (const fs::path& path : cell.of_run) {
-      const std::size_t rows = rows_in(path);
+      const std::size_t rows = rows_in(path, equal_times);
       if (!longest.empty() && rows <= most) continue;
       longest = path;
       most = rows;
     }
   }
-  StateRows rows = read_with_innovations(longest, tolerance);
+  StateRows rows = read_with_innovations(longest, tolerance, equal_times);
   if (!rows.time.empty()) return {longest, std::move(rows)};
   throw StudyError(longest.string() +
                    ": no rows behind the header, nor in any other file (nothing to judge): write "
@@ -168,12 +171,17 @@ std::vector<std::string> write_runs(const JudgedFiles& files, const JudgingOptio
                                     ResultWriter& writer) {
   const std::vector<RecordLayout> layouts = layouts_of(plan, Detail::usual);
   UnwrappedInnovations unwrapped;
+  LikelyMistakes mistakes(files);
   for (std::size_t run = 0; run < files.runs.size(); ++run) {
-    const StateRows truth = read_truth(files.truth[run], longest.rows.shape);
+    const StateRows truth = read_truth(files.truth[run], longest.rows.shape, options.equal_times);
+    mistakes.add_truth(truth, files.truth[run]);
     for (std::size_t c = 0; c < files.cells.size(); ++c) {
       const fs::path& path = files.cells[c].of_run[run];
-      const StateRows rows = read_with_innovations(path, options.match.tolerance);
+      const StateRows rows =
+          read_with_innovations(path, options.match.tolerance, options.equal_times);
       unwrapped.add(rows);
+      require_same_time_unit(rows, path, truth, files.truth[run]);
+      mistakes.add(c, rows, path, truth);
       require_alike(rows, path, longest.rows, longest.path, options.match.tolerance);
       std::vector<Eigen::VectorXd> truths;
       for (const double time : longest.rows.time)
@@ -186,14 +194,22 @@ std::vector<std::string> write_runs(const JudgedFiles& files, const JudgingOptio
       writer.write(c, run, record_of(layouts[c], rows, truths, *options.convention));
     }
   }
-  return unwrapped.notes();
+  std::vector<std::string> notes = unwrapped.notes();
+  std::ranges::copy(mistakes.notes(), std::back_inserter(notes));
+  return notes;
 }
 
 /// The convention that the user gave, or the only one that the state may have. Throws StudyError if
 /// none was given and there are several.
 ErrorConvention stated_error(const LongestRun& longest, std::optional<ErrorConvention> said) {
   const auto known = conventions_of(longest.rows.shape.kind);
-  if (!said && known.size() == 1) return known.front();
+  const std::string likeness = likeness_to_pose(longest.rows.shape);
+  if (!said && known.size() == 1 && likeness.empty()) return known.front();
+  if (!said && known.size() == 1) {
+    throw StudyError("judge: --error is missing (" + longest.path.string() +
+                     " is judged as a vector, mean - truth: " + likeness +
+                     "): give --error world if it is a vector");
+  }
   if (!said) {
     throw StudyError(
         "judge: --error is missing (the verdict depends on the error that the covariance "
@@ -202,7 +218,10 @@ ErrorConvention stated_error(const LongestRun& longest, std::optional<ErrorConve
   }
   if (std::ranges::find(known, *said) != known.end()) return *said;
   throw StudyError("--error " + name_of(*said) + ": not of a vector (" + longest.path.string() +
-                   " has no pose, and only poses have frames): give --error world");
+                   " has no pose, and only poses have frames" +
+                   (likeness.empty() ? "" : "; " + likeness) +
+                   "): name the columns of the pose, or judge the error mean - truth of the vector "
+                   "by --error world");
 }
 
 /// A source of drives that has only the times of the estimates.
@@ -247,6 +266,7 @@ std::string import_text(const JudgedFiles& files, const TextPairs& settings) {
   };
   for (const auto& [name, value] : settings) add(name, value);
   add("runs", std::to_string(files.runs.front()) + ":" + std::to_string(files.runs.back() + 1));
+  if (!files.names.empty()) add("names of runs", joined(files.names));
   add("truth_sha256", contents_of(files.truth));
   for (const EstimatorFiles& cell : files.cells)
     add("sha256 of " + cell.cell, contents_of(cell.of_run));
@@ -282,6 +302,10 @@ StudyPlan imported_plan(const JudgedFiles& files, const StateRows& first,
   plan.scenario = {{"kind", "imported"},
                    {"tolerance", to_text(options.match.tolerance)},
                    {"interpolate", options.match.interpolate ? "yes" : "no"}};
+  if (options.equal_times != EqualTimes::refuse) {
+    plan.scenario.emplace_back("keep",
+                               options.equal_times == EqualTimes::keep_first ? "first" : "last");
+  }
   TextPairs all = settings;
   all.insert(all.end(), plan.scenario.begin() + 1, plan.scenario.end());
   plan.resolved_text = import_text(files, all);
@@ -294,7 +318,7 @@ StudyPlan imported_plan(const JudgedFiles& files, const StateRows& first,
 }  // namespace
 
 std::vector<std::string> judge_files(const JudgedFiles& files, const JudgingOptions& given) {
-  const LongestRun longest = longest_of(files, given.match.tolerance);
+  const LongestRun longest = longest_of(files, given.match.tolerance, given.equal_times);
   JudgingOptions options = given;
   options.convention = stated_error(longest, given.convention);
   const StudyPlan plan = imported_plan(files, longest.rows, options);
