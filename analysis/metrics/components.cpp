@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <iterator>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -20,6 +19,12 @@ struct ComponentErrors {
   std::vector<double> error;      ///< {component} RMS error
   std::vector<double> deviation;  ///< {component} RMS deviation that the other program reports
 };
+
+/// Ratio of the RMS error of a component to its RMS deviation; NaN if the deviation is 0.
+double ratio_of(const ComponentErrors& found, std::size_t component) {
+  const double deviation = found.deviation[component];
+  return deviation > 0.0 ? found.error[component] / deviation : kNaN;
+}
 
 class ComponentsOverRuns final : public MergedSums<ComponentsOverRuns> {
  public:
@@ -37,10 +42,11 @@ class ComponentsOverRuns final : public MergedSums<ComponentsOverRuns> {
   }
   void put(CellAnalysis& cell) override {
     if (squares_.empty()) return;
-    const auto root = [&](double sum) { return std::sqrt(sum / samples_); };
     ComponentErrors found;
-    std::ranges::transform(squares_, std::back_inserter(found.error), root);
-    std::ranges::transform(variances_, std::back_inserter(found.deviation), root);
+    for (std::size_t c = 0; c < squares_.size(); ++c) {
+      found.error.push_back(std::sqrt(squares_[c] / samples_));
+      found.deviation.push_back(std::sqrt(variances_[c] / samples_ / kScale));
+    }
     cell.findings.put(std::move(found));
   }
   static constexpr auto parts() {
@@ -53,12 +59,15 @@ class ComponentsOverRuns final : public MergedSums<ComponentsOverRuns> {
     for (std::size_t c = 0; c < squares_.size(); ++c) {
       const auto i = static_cast<Eigen::Index>(c);
       squares_[c] += error(i) * error(i);
-      variances_[c] += covariance(i, i);
+      variances_[c] += kScale * covariance(i, i);
     }
     samples_ += 1.0;
   }
 
-  /// {component} sums of squared errors and of reported variances.
+  /// Factor of variances, so that sums of the largest numbers are finite.
+  static constexpr double kScale = 0x1p-64;
+
+  /// {component} sums of squared errors and of scaled reported variances.
   std::vector<double> squares_, variances_;
   double samples_ = 0.0;
 };
@@ -75,7 +84,7 @@ TextTable component_table(const StudyAnalysis& study) {
                  {"unit", study.imported.units[c], Align::left},
                  {"RMS error", readable(found.error[c])},
                  {"RMS sigma", readable(found.deviation[c])},
-                 {"ratio", readable(found.error[c] / found.deviation[c])}});
+                 {"ratio", readable(ratio_of(found, c))}});
     }
   }
   return table;
@@ -87,7 +96,7 @@ std::vector<Section> imported_sections(const StudyAnalysis& study) {
     const ComponentErrors& found = cell.get<ComponentErrors>();
     double ratio = kNaN;
     for (std::size_t c = 0; c < found.error.size(); ++c) {
-      ratio = std::fmax(ratio, found.error[c] / found.deviation[c]);
+      ratio = std::fmax(ratio, ratio_of(found, c));
     }
     return ratio;
   };

@@ -3,6 +3,7 @@
 #include "analysis/verdict/convention_hints.hpp"
 
 #include "analysis/run/measured_run.hpp"
+#include "analysis/run/nees.hpp"
 #include "analysis/study/metric.hpp"
 
 #include <optional>
@@ -11,14 +12,26 @@
 namespace montecarta::analysis {
 namespace {
 
+/// {scan} NEES of imported errors.
+std::vector<double> nees_of(const ErrorRows& errors) {
+  std::vector<double> nees;
+  for (std::size_t s = 0; s < errors.scans(); ++s) {
+    nees.push_back(on_full_scale(imported_nees(errors.error(s), errors.covariance_of(s)),
+                                 errors.components()));
+  }
+  return nees;
+}
+
 class HintsOverRuns final : public MergedSums<HintsOverRuns> {
  public:
   explicit HintsOverRuns(const RunCriteria& criteria) : criteria_(&criteria) {}
   void add(const MeasuredRun& run) override {
     const ErrorRows& error = run.rows.error;
-    if (error.nees_by.front().empty()) return;
+    if (error.value.empty()) return;
     if (!hints_) hints_.emplace(error.components(), criteria_->times.size());
-    hints_->add(error.nees_by);
+    NeesBy<kErrorConventions.size()> by_convention = error.nees_by;
+    if (by_convention.front().empty()) by_convention.front() = nees_of(error);  // of a vector
+    hints_->add(by_convention, nees_by_mistake(error, criteria_->units));
   }
   void put(CellAnalysis& cell) override {
     if (!hints_) return;

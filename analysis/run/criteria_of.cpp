@@ -87,7 +87,11 @@ RunCriteria criteria_of(const ResultFile& file, double level, double within) {
                        .components = {kErrorComponents.begin(), kErrorComponents.end()}};
   const ImportedState imported =
       file.cells().empty() ? ImportedState() : imported_state(file.cells().front());
-  if (imported.is_imported()) criteria.components = imported.components;
+  if (imported.is_imported()) {
+    criteria.components = imported.components;
+    criteria.units = imported.units;
+    criteria.share_of_runs = 1.0;  // a file of imported estimates is no shard
+  }
   for (const ReferencePath& path : file.references()) {
     criteria.references.emplace_back(path, file.times(), file.description().start);
     if (path.covariance.empty()) continue;

@@ -42,8 +42,6 @@ namespace {
 
 constexpr double kLeastPivot = 1e-12;  // least pivot, and least eigenvalue that counts in the rank
 constexpr double kMostNegative = -1e-9;  // least eigenvalue that rounding explains
-// Largest error that rounding explains in a component known exactly.
-constexpr double kRounding = 1e-9;
 // [standard deviations] largest error outside the range of P that second-order effects explain.
 constexpr double kFarthestOutside = 10.0;
 // [standard deviations] largest asymmetry that rounding to six digits explains.
@@ -262,13 +260,14 @@ std::size_t whiten(const Eigen::VectorXd& error, const Eigen::MatrixXd& covarian
 }
 
 void add_errors_of_exact(const Eigen::VectorXd& error, const Eigen::MatrixXd& covariance,
-                         const Eigen::VectorXd& least_deviation, std::span<double> largest) {
+                         const Eigen::VectorXd& least_deviation, std::span<double> largest,
+                         double rounding) {
   if (!error.allFinite() || !covariance.allFinite()) return;
   for (Eigen::Index i = 0; i < error.size(); ++i) {
     const double size = std::abs(error(i)), least_variance = std::pow(least_deviation(i), 2);
     double& found = largest[static_cast<std::size_t>(i)];
     const bool is_exact = std::abs(covariance(i, i)) <= least_variance;
-    if (is_exact && size > kRounding) found = std::max(found, size);
+    if (is_exact && size > rounding) found = std::max(found, size);
   }
 }
 

@@ -95,9 +95,14 @@ std::size_t whiten(const Eigen::VectorXd& error, const Eigen::MatrixXd& covarian
                    std::span<double> standardised);
 
 /// Raises `largest` {component} to the errors of components with a deviation of at most
-/// `least_deviation`, except errors that rounding explains (1e-9).
+/// `least_deviation`, except errors of at most `rounding`, which rounding explains.
 void add_errors_of_exact(const Eigen::VectorXd& error, const Eigen::MatrixXd& covariance,
-                         const Eigen::VectorXd& least_deviation, std::span<double> largest);
+                         const Eigen::VectorXd& least_deviation, std::span<double> largest,
+                         double rounding = 1e-9);
+
+/// [m, rad] Errors up to this are explained by poses that another program rounds to single
+/// precision.
+inline constexpr double kSingleRounding = 1e-6;
 
 /// Poses with deviations up to these [m, m, rad] are known exactly.
 const Eigen::Vector3d& least_pose_deviation();

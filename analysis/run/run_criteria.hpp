@@ -43,6 +43,7 @@ struct RunCriteria {
   double share_of_runs = 1.0;
   /// {component} names of the components of the judged errors.
   std::vector<std::string> components = {};
+  std::vector<std::string> units = {};  ///< {component} of imported errors, else empty
   /// {run of the study} criteria for each drive; empty if all runs process one drive. Otherwise
   /// `times` are those of the longest drive, and `references` and `judged_fixes` those of the
   /// first. Such drives are recordings without truth: they have no errors and no NEES.

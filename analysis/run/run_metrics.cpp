@@ -205,7 +205,12 @@ void RunMetrics::correct_and_whiten(const RunRows& rows, std::size_t particles, 
     const Eigen::MatrixXd P = rows.error.covariance_of(s);
     whiten(error, P, exact, std::span(whitened_.whitened).subspan(d * s, d),
            std::span(whitened_.standardised).subspan(d * s, d));
-    add_errors_of_exact(error, P, exact, whitened_.errors_of_exact);
+    const bool is_pose = !rows.error.nees_by.front().empty();
+    if (is_pose) {
+      add_errors_of_exact(error, P, exact, whitened_.errors_of_exact, kSingleRounding);
+    } else {
+      add_errors_of_exact(error, P, exact, whitened_.errors_of_exact);
+    }
   }
 }
 

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/verdict/convention_hints.hpp"
 
+#include "analysis/run/nees.hpp"
 #include "engine/text/number_text.hpp"
 
 #include <algorithm>
+#include <numbers>
 
 namespace montecarta::analysis {
 namespace {
@@ -19,24 +21,89 @@ std::string comma_joined(const std::vector<std::string>& parts) {
   return all;
 }
 
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+/// Returns whether components are all positions [m], then angles [rad].
+bool are_positions_then_angles(std::span<const std::string> units) {
+  const auto first_angle = std::ranges::find(units, "rad");
+  return first_angle != units.begin() && first_angle != units.end() &&
+         std::all_of(units.begin(), first_angle, [](const auto& unit) { return unit == "m"; }) &&
+         std::all_of(first_angle, units.end(), [](const auto& unit) { return unit == "rad"; });
+}
+
+/// {scan} NEES of errors whose covariances are corrected.
+template <class Correct>
+std::vector<double> nees_with(const ErrorRows& errors, const Correct& correct) {
+  std::vector<double> nees;
+  for (std::size_t s = 0; s < errors.scans(); ++s) {
+    const Nees sample = imported_nees(errors.error(s), correct(errors.covariance_of(s)));
+    nees.push_back(on_full_scale(sample, errors.components()));
+  }
+  return nees;
+}
+
+std::string with_ratio(const char* name, const Verdict& found) {
+  return std::string(name) + " (NEES ratio " + compact(found.ratio_estimate()) + ")";
+}
+
+/// The mistakes that would explain why the errors do not fit as stated.
+std::string mistakes_in_words(const ConventionHint& hint) {
+  std::vector<std::string> fitting;
+  for (std::size_t k = 0; k < hint.by_mistake.size(); ++k) {
+    const Verdict& found = hint.by_mistake[k];
+    if (found.answer == Answer::untested || !fits_errors(found)) continue;
+    fitting.push_back(with_ratio(kLayoutMistakes[k], found));
+  }
+  if (fitting.empty()) return "";
+  return "The covariances may be written with " + comma_joined(fitting) +
+         ", by which they would not have been rejected";
+}
+
 }  // namespace
+
+NeesBy<kLayoutMistakes.size()> nees_by_mistake(const ErrorRows& errors,
+                                               std::span<const std::string> units) {
+  NeesBy<kLayoutMistakes.size()> nees;
+  const auto angles = static_cast<std::size_t>(std::ranges::count(units, "rad"));
+  if (units.size() != errors.components() || angles == 0) return nees;
+  std::vector<Eigen::Index> order(units.size());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    order[i] = static_cast<Eigen::Index>((i + angles) % order.size());
+  }
+  if (are_positions_then_angles(units)) {
+    nees[0] = nees_with(errors,
+                        [&](const Eigen::MatrixXd& P) { return Eigen::MatrixXd(P(order, order)); });
+  }
+  Eigen::VectorXd scale = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(units.size()));
+  for (std::size_t i = 0; i < units.size(); ++i) {
+    if (units[i] == "rad") scale(static_cast<Eigen::Index>(i)) = kDegree;
+  }
+  nees[1] = nees_with(errors, [&](const Eigen::MatrixXd& P) {
+    return Eigen::MatrixXd(scale.asDiagonal() * P * scale.asDiagonal());
+  });
+  return nees;
+}
 
 ConventionHints::ConventionHints(std::size_t components, std::size_t scans)
     : components_(static_cast<double>(components)),
-      nees_(kErrorConventions.size(), SummedError(scans)) {}
+      nees_(kErrorConventions.size() + kLayoutMistakes.size(), SummedError(scans)) {}
 
-void ConventionHints::add(const std::array<std::vector<double>, kErrorConventions.size()>& nees) {
+void ConventionHints::add(const NeesBy<kErrorConventions.size()>& by_convention,
+                          const NeesBy<kLayoutMistakes.size()>& by_mistake) {
   ++runs_;
   for (std::size_t k = 0; k < nees_.size(); ++k) {
-    if (!nees[k].empty()) nees_[k].add(nees[k], components_);
+    const std::vector<double>& nees =
+        k < by_convention.size() ? by_convention[k] : by_mistake[k - by_convention.size()];
+    if (!nees.empty()) nees_[k].add(nees, components_);
   }
 }
 
 ConventionHint ConventionHints::result(std::span<const double> times, double level,
                                        double within) const {
   ConventionHint hint;
-  for (const SummedError& nees : nees_) {
-    hint.by_convention.push_back(judge(nees.families(level, times), level, within, runs_));
+  for (std::size_t k = 0; k < nees_.size(); ++k) {
+    (k < kErrorConventions.size() ? hint.by_convention : hint.by_mistake)
+        .push_back(judge(nees_[k].families(level, times), level, within, runs_));
   }
   return hint;
 }
@@ -46,24 +113,30 @@ std::string in_words(const ConventionHint& hint, const std::string& cell, const 
   bool said_fits = false;
   for (std::size_t k = 0; k < hint.by_convention.size(); ++k) {
     const Verdict& found = hint.by_convention[k];
-    if (found.answer == Answer::untested) return "";
-    if (said == kErrorConventions[k].name) {
+    const char* name = kErrorConventions[k].name;
+    if (found.answer == Answer::untested) {
+      if (said == name) return "";
+    } else if (said == name) {
       said_fits = fits_errors(found);
     } else {
-      (fits_errors(found) ? fitting : others)
-          .push_back(std::string(kErrorConventions[k].name) + " (NEES ratio " +
-                     compact(found.ratio_estimate()) + ")");
+      (fits_errors(found) ? fitting : others).push_back(with_ratio(name, found));
     }
   }
-  if (fitting.empty() && others.empty()) return "";
+  const std::string mistakes = said_fits ? "" : mistakes_in_words(hint);
+  if (fitting.empty() && others.empty() && mistakes.empty()) return "";
   std::string words = cell + ": the verdict is by the error " + said + ". ";
-  if (fitting.empty())
-    return words + "Every other would have been rejected" + (said_fits ? ": " : " as well: ") +
-           comma_joined(others);
-  words += "The same covariances would not have been rejected as " + comma_joined(fitting);
-  if (!others.empty()) words += ", but as " + comma_joined(others);
-  return words + (said_fits ? ": this study cannot tell them apart"
-                            : ": were they meant so? If not, this is by chance, and no verdict");
+  if (fitting.empty() && others.empty()) return words + mistakes;
+  if (fitting.empty()) {
+    words += "Every other would have been rejected";
+    words += said_fits ? ": " : " as well: ";
+    words += comma_joined(others);
+  } else {
+    words += "The same covariances would not have been rejected as " + comma_joined(fitting);
+    if (!others.empty()) words += ", but as " + comma_joined(others);
+    words += said_fits ? ": this study cannot tell them apart"
+                       : ": were they meant so? If not, this is by chance, and no verdict";
+  }
+  return mistakes.empty() ? words : words + ". " + mistakes;
 }
 
 }  // namespace montecarta::analysis

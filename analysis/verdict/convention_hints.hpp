@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "analysis/run/run_rows.hpp"
 #include "analysis/statistics/sums.hpp"
 #include "analysis/verdict/summed_error.hpp"
 #include "analysis/verdict/verdict.hpp"
@@ -16,21 +17,41 @@
 
 namespace montecarta::analysis {
 
-/// Verdicts on the imported estimates of a cell, one for each convention of the error.
-struct ConventionHint {
-  /// {kErrorConventions} verdicts; empty if only one convention applies.
-  std::vector<Verdict> by_convention;
+/// Mistakes in the layout of a covariance, after which it may fit the errors as it should.
+inline constexpr std::array kLayoutMistakes = {
+    "rotation before position",  ///< the components of the covariance begin with the rotation
+    "angles in degrees"          ///< its angles are in degrees
 };
 
-/// Adds up the NEES of runs under every convention.
+/// Verdicts on the imported estimates of a cell, one for each convention of the error and one for
+/// each mistake in the layout.
+struct ConventionHint {
+  /// {kErrorConventions} verdicts, untested for conventions that do not apply.
+  std::vector<Verdict> by_convention;
+  /// {kLayoutMistakes} verdicts under the stated convention, untested for mistakes that do not
+  /// apply.
+  std::vector<Verdict> by_mistake = {};
+};
+
+/// NEES by convention or by mistake, and then by scan; empty where it does not apply.
+template <std::size_t N>
+using NeesBy = std::array<std::vector<double>, N>;
+
+/// {kLayoutMistakes}{scan} The NEES of imported errors whose components have these units, if the
+/// layout of their covariances has the mistake.
+NeesBy<kLayoutMistakes.size()> nees_by_mistake(const ErrorRows& errors,
+                                               std::span<const std::string> units);
+
+/// Adds up the NEES of runs under every convention and every mistake.
 class ConventionHints {
  public:
   ConventionHints() = default;  ///< empty sums, to be filled by a SumReader
   /// Makes sums for errors of `components` components at `scans` scans.
   ConventionHints(std::size_t components, std::size_t scans);
 
-  /// Adds the NEES {kErrorConventions}{scan} of one run.
-  void add(const std::array<std::vector<double>, kErrorConventions.size()>& nees);
+  /// Adds the NEES of one run.
+  void add(const NeesBy<kErrorConventions.size()>& by_convention,
+           const NeesBy<kLayoutMistakes.size()>& by_mistake = {});
   /// Verdicts by size and scans at `level`; `times` [s] of the scans.
   ConventionHint result(std::span<const double> times, double level, double within) const;
   static constexpr auto parts() {
@@ -41,11 +62,13 @@ class ConventionHints {
  private:
   double components_ = 0.0;
   std::uint64_t runs_ = 0;
-  std::vector<SummedError> nees_;  ///< {kErrorConventions} sums of the NEES
+  /// {kErrorConventions, then kLayoutMistakes} sums of the NEES
+  std::vector<SummedError> nees_;
 };
 
-/// A text that names the conventions other than `said` that fit the covariances of `cell`, and
-/// those that do not. Empty if none was tested.
+/// A text that names the conventions other than `said` that fit the covariances of `cell`, those
+/// that do not, and the mistakes that would explain errors that do not fit. Empty if nothing was
+/// tested.
 std::string in_words(const ConventionHint& hint, const std::string& cell, const std::string& said);
 
 }  // namespace montecarta::analysis

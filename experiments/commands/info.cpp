@@ -25,13 +25,19 @@ std::size_t runs_done(const ResultFile& file) {
   return static_cast<std::size_t>(std::ranges::count(done, true));
 }
 
+/// Number of runs of the study. The numbers of imported runs may start anywhere.
+std::uint64_t runs_of_study(const ResultFile& file) {
+  const bool is_imported = !file.cells().empty() && file.cells().front().has("error");
+  return is_imported ? file.runs().size() : file.study_runs();
+}
+
 void print_study(const ResultFile& file) {
   const auto& sums = file.description().sums;
   const std::string runs = sums ? std::to_string(sums->last_run - sums->first_run) + " of " +
                                       std::to_string(file.study_runs()) + " in sums, the first " +
                                       std::to_string(file.runs().size()) + " also in rows"
                                 : std::to_string(file.runs().size()) + " of " +
-                                      std::to_string(file.study_runs()) + ", of which " +
+                                      std::to_string(runs_of_study(file)) + ", of which " +
                                       std::to_string(runs_done(file)) + " are done in every cell";
   std::cout << wrapped(file.title(), output_width()) << "\n"
             << listing(

@@ -30,6 +30,13 @@ std::optional<ErrorConvention> convention_of(const Arguments& arguments) {
   return std::nullopt;
 }
 
+/// The choice among rows of one time by --keep.
+EqualTimes equal_times_of(const Arguments& arguments) {
+  const auto said = arguments.text("keep");
+  if (!said) return EqualTimes::refuse;
+  return *said == "first" ? EqualTimes::keep_first : EqualTimes::keep_last;
+}
+
 JudgingOptions judging_options(const Arguments& arguments) {
   JudgingOptions options;
   options.output = arguments.text("output").value();
@@ -39,6 +46,7 @@ JudgingOptions judging_options(const Arguments& arguments) {
       arguments.number("tolerance", 0.0, 1e6).value_or(options.match.tolerance);
   options.match.interpolate = arguments.has("interpolate");
   options.match.longest_gap = arguments.number("longest-gap", 0.0, 1e9);
+  options.equal_times = equal_times_of(arguments);
   options.existing = arguments.has("force") ? Existing::replace : Existing::refuse;
   options.provenance = provenance_of("judge", arguments);
   options.within = arguments.number("within", kLeastMargin, kMostMargin);
@@ -57,7 +65,8 @@ int judge_command(const Arguments& arguments) {
                 engine::output_width());
   print_where_to_look(options.output.string(), "");
   for (const std::string& note : notes) std::cerr << "montecarta: note: " << note << "\n";
-  std::cerr << "montecarta: " << files.runs.size() << " runs of " << files.cells.size()
+  std::cerr << "montecarta: " << files.runs.size()
+            << (files.runs.size() == 1 ? " run of " : " runs of ") << files.cells.size()
             << (files.cells.size() == 1 ? " estimator" : " estimators") << ", stored in "
             << options.output.string() << "\n";
   return kDone;

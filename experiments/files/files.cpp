@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <fstream>
 #include <set>
 #include <system_error>
@@ -21,6 +22,13 @@ std::array<fs::path, 3> shipped_roots() {
   return {executable.parent_path().parent_path() / "share" / "montecarta", MONTECARTA_INSTALLED_DIR,
           MONTECARTA_SHIPPED_DIR};
 }
+
+bool has_letter(std::string_view text) {
+  return std::ranges::any_of(text, [](unsigned char c) { return std::isalpha(c) != 0; });
+}
+
+/// Remedy of numbers with a decimal comma.
+constexpr const char* kDecimalPoints = "write decimal points, and commas between the columns";
 
 }  // namespace
 
@@ -118,11 +126,43 @@ std::optional<std::string_view> CsvRows::take_row() {
   return std::nullopt;
 }
 
+void CsvRows::refuse_other_separators(std::string_view row) const {
+  if (row.find(';') != row.npos) {
+    refuse(std::string("semicolons separate the columns (commas are read): ") + kDecimalPoints +
+           ", e.g. 0.5,2.25");
+  }
+  if (row.find(',') != row.npos || !has_letter(row)) return;
+  if (row.find_first_of("\t ") == row.npos) return;
+  refuse(std::string(row.find('\t') != row.npos ? "tabs" : "blanks") +
+         " separate the columns (commas are read): write commas");
+}
+
+void CsvRows::refuse_number_of_fields(std::string_view row, std::size_t fields) const {
+  refuse_other_separators(row);
+  const std::string remedy = "write one field for each column";
+  const std::string fault =
+      std::to_string(fields) + " fields (a row is " + joined(columns_, ",") + "): ";
+  if (fields < columns_.size()) refuse(fault + remedy);
+  if (row.find('"') != row.npos) {
+    refuse("numbers in quotes with decimal commas (" + std::to_string(fields) + " fields for " +
+           std::to_string(columns_.size()) + " columns): remove the quotes, and " + kDecimalPoints);
+  }
+  if (row.find('.') == row.npos) {
+    refuse("decimal commas (" + std::to_string(fields) + " fields for " +
+           std::to_string(columns_.size()) + " columns, and no decimal point): " + kDecimalPoints);
+  }
+  refuse(fault + remedy);
+}
+
 void CsvRows::read_header(std::span<const std::string> headers) {
   const std::string remedy = headers.empty() ? "their names" : joined(headers, " or ");
   const std::optional<std::string_view> row = take_row();
   if (!row) {
     throw StudyError(path_ + ": empty (the first row names the columns): begin with " + remedy);
+  }
+  refuse_other_separators(*row);
+  if (row->find('"') != row->npos) {
+    refuse("names in quotes (they are read as part of the names): remove the quotes");
   }
   constexpr std::size_t kLongestHeader = 200;  // no known header is longer
   const std::size_t length = headers.empty() ? row->size() : kLongestHeader;
@@ -140,18 +180,36 @@ bool CsvRows::next() {
   const std::optional<std::string_view> row = take_row();
   if (!row) return false;
   const auto fields = static_cast<std::size_t>(std::ranges::count(*row, ',')) + 1;
-  if (fields != columns_.size()) {
-    refuse(std::to_string(fields) + " fields (a row is " + joined(columns_, ",") +
-           "): write one field for each column");
-  }
+  if (fields != columns_.size()) refuse_number_of_fields(*row, fields);
   split_into(*row, ',', fields_);
   return has_rows_ = true;
 }
 
 double CsvRows::number(std::size_t i, const char* noun) const {
   if (const std::optional<double> value = to_number(field(i))) return *value;
+  const bool is_quoted = field(i).starts_with('"') || field(i).starts_with('\'');
   refuse("'" + excerpt(field(i)) + "' is no " + noun +
-         " (a finite number is needed): write e.g. 12.5");
+         " (a finite number is needed): " + (is_quoted ? "remove the quotes" : "write e.g. 12.5"));
+}
+
+void CsvRows::refuse_equal_times(const std::string& other_remedy) const {
+  constexpr std::size_t kFewDigits = 10;   // of the time in s since 1970, these are whole seconds
+  constexpr std::size_t kLeastDigits = 4;  // fewer are no loss, but a round number
+  const std::string_view text = field(0);
+  const std::string_view mantissa = text.substr(0, text.find_first_of("eE"));
+  const std::size_t point = std::min(mantissa.find('.'), mantissa.size());
+  const auto digits = static_cast<std::size_t>(
+      std::ranges::count_if(mantissa, [](unsigned char c) { return std::isdigit(c) != 0; }));
+  const bool is_whole =
+      mantissa.size() == text.size() && mantissa.find_first_not_of("0.", point) == mantissa.npos;
+  std::string why = "the row before has the same time";
+  if (is_whole) {
+    why += ", and it is printed in whole seconds";
+  } else if (digits >= kLeastDigits && digits <= kFewDigits) {
+    why += ", and " + std::to_string(digits) + " digits are printed";
+  }
+  refuse("equal times " + std::string(text) + " s (" + why + "): print times with 15 digits, or " +
+         other_remedy);
 }
 
 double CsvRows::time(Order order) {
@@ -159,9 +217,9 @@ double CsvRows::time(Order order) {
   last_time_ = number(0, "time");
   if (last_time_ > before || (last_time_ == before && order == Order::not_earlier))
     return last_time_;
+  if (last_time_ == before) refuse_equal_times("leave one of the rows out");
   refuse("time " + to_text(last_time_) + " s comes after " + to_text(before) +
-         " s (rows go forward in time): sort them" +
-         (order == Order::later ? ", one row for each time" : ""));
+         " s (rows go forward in time): sort them");
 }
 
 }  // namespace montecarta::experiments

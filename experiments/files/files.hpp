@@ -59,8 +59,13 @@ class CsvRows {
   enum class Order { later, not_earlier };
   /// Field 0 as a time [s]. Throws StudyError if it is not in order.
   double time(Order order = Order::later);
+  /// Refuses a row whose time equals that of the row before. The error counts the digits of the
+  /// time if they are few, and ends with `other_remedy`.
+  [[noreturn]] void refuse_equal_times(const std::string& other_remedy) const;
   /// "FILE:LINE" of the current row.
   std::string place() const;
+  /// Line of the current row, from 1.
+  std::size_t line() const { return line_; }
   /// Throws StudyError with the place of the current row and `fault`, worded "problem (why):
   /// remedy".
   [[noreturn]] void refuse(const std::string& fault) const;
@@ -71,6 +76,9 @@ class CsvRows {
   /// Takes the next row that is not empty; nullopt at the end.
   std::optional<std::string_view> take_row();
   void refuse_open_end(std::string_view line) const;
+  /// Refuses a row or header whose fields are not separated by commas.
+  void refuse_other_separators(std::string_view row) const;
+  [[noreturn]] void refuse_number_of_fields(std::string_view row, std::size_t fields) const;
   void read_header(std::span<const std::string> headers);
 
   std::string path_;

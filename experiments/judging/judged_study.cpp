@@ -7,7 +7,10 @@
 #include "engine/records/posix_file.hpp"
 #include "experiments/files/files.hpp"
 #include "experiments/judging/innovation_rows.hpp"
+#include "experiments/judging/likely_mistakes.hpp"
+#include "experiments/judging/read_rows.hpp"
 #include "experiments/judging/scan_clock.hpp"
+#include "experiments/judging/time_units.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>
@@ -145,8 +148,8 @@ std::vector<Pose> truths_of_scans(const std::vector<MatchedRows>& cells, std::si
   return truths;
 }
 
-StateRows read_with_innovations(const fs::path& path, double tolerance) {
-  StateRows rows = read_estimates(path);
+StateRows read_with_innovations(const fs::path& path, double tolerance, EqualTimes equal_times) {
+  StateRows rows = read_estimates(path, equal_times);
   if (const auto beside = innovations_beside(path)) {
     read_innovations(*beside, path, tolerance, rows);
   }
@@ -170,20 +173,20 @@ struct Overview {
   ScanClock clock;
 };
 
-Overview overview_of(const JudgedFiles& files, double tolerance) {
+Overview overview_of(const JudgedFiles& files, double tolerance, EqualTimes equal_times) {
   std::vector<std::vector<double>> times;
   fs::path longest;
   std::size_t most = 0;
   for (const EstimatorFiles& cell : files.cells) {
     for (const fs::path& path : cell.of_run) {
-      times.push_back(times_in(path));
+      times.push_back(times_in(path, equal_times));
       require_tolerance(path, times.back(), tolerance);
       if (!longest.empty() && times.back().size() <= most) continue;
       longest = path;
       most = times.back().size();
     }
   }
-  StateRows rows = read_with_innovations(longest, tolerance);
+  StateRows rows = read_with_innovations(longest, tolerance, equal_times);
   if (most > 0) return {longest, std::move(rows), ScanClock(times, tolerance)};
   throw StudyError(longest.string() +
                    ": no rows behind the header, nor in any other file (nothing to judge): write "
@@ -237,17 +240,21 @@ std::vector<std::string> write_runs(const JudgedFiles& files, const JudgingOptio
                                     ResultWriter& writer) {
   const std::vector<RecordLayout> layouts = layouts_of(plan, Detail::usual);
   UnwrappedInnovations unwrapped;
+  LikelyMistakes mistakes(files);
   TruthUse use;
   std::uint64_t missing = 0;
   for (std::size_t run = 0; run < files.runs.size(); ++run) {
-    const TruthPath truth(read_truth(files.truth[run], all.rows.shape), files.truth[run],
-                          options.match);
+    const StateRows truth_rows = read_truth(files.truth[run], all.rows.shape, options.equal_times);
+    mistakes.add_truth(truth_rows, files.truth[run]);
+    const TruthPath truth(truth_rows, files.truth[run], options.match);
     std::vector<MatchedRows> cells;
-    for (const EstimatorFiles& cell : files.cells) {
-      const fs::path& path = cell.of_run[run];
-      StateRows rows = read_with_innovations(path, options.match.tolerance);
+    for (std::size_t c = 0; c < files.cells.size(); ++c) {
+      const fs::path& path = files.cells[c].of_run[run];
+      StateRows rows = read_with_innovations(path, options.match.tolerance, options.equal_times);
       unwrapped.add(rows);
+      require_same_time_unit(rows, path, truth_rows, files.truth[run]);
       require_alike(rows, path, all.rows, all.path);
+      mistakes.add(c, rows, path, truth_rows);
       std::vector<std::size_t> scans = all.clock.scans_of(rows.time);
       auto truths = truth.at(rows, path, use);
       cells.push_back({std::move(rows), std::move(scans), std::move(truths)});
@@ -268,6 +275,7 @@ std::vector<std::string> write_runs(const JudgedFiles& files, const JudgingOptio
   std::vector<std::string> notes = unwrapped.notes();
   std::ranges::copy(notes_on_times(all, missing), std::back_inserter(notes));
   std::ranges::copy(use.notes(), std::back_inserter(notes));
+  std::ranges::copy(mistakes.notes(), std::back_inserter(notes));
   return notes;
 }
 
@@ -275,7 +283,13 @@ std::vector<std::string> write_runs(const JudgedFiles& files, const JudgingOptio
 /// none was given and there are several.
 ErrorConvention stated_error(const Overview& all, std::optional<ErrorConvention> said) {
   const auto known = conventions_of(all.rows.shape.kind);
-  if (!said && known.size() == 1) return known.front();
+  const std::string likeness = likeness_to_pose(all.rows.shape);
+  if (!said && known.size() == 1 && likeness.empty()) return known.front();
+  if (!said && known.size() == 1) {
+    throw StudyError("judge: --error is missing (" + all.path.string() +
+                     " is judged as a vector, mean - truth: " + likeness +
+                     "): give --error world if it is a vector");
+  }
   if (!said) {
     throw StudyError(
         "judge: --error is missing (the verdict depends on the error that the covariance "
@@ -284,7 +298,10 @@ ErrorConvention stated_error(const Overview& all, std::optional<ErrorConvention>
   }
   if (std::ranges::find(known, *said) != known.end()) return *said;
   throw StudyError("--error " + name_of(*said) + ": not of a vector (" + all.path.string() +
-                   " has no pose, and only poses have frames): give --error world");
+                   " has no pose, and only poses have frames" +
+                   (likeness.empty() ? "" : "; " + likeness) +
+                   "): name the columns of the pose, or judge the error mean - truth of the vector "
+                   "by --error world");
 }
 
 /// A source of drives that has only the times of the estimates.
@@ -329,6 +346,7 @@ std::string import_text(const JudgedFiles& files, const TextPairs& settings) {
   };
   for (const auto& [name, value] : settings) add(name, value);
   add("runs", std::to_string(files.runs.front()) + ":" + std::to_string(files.runs.back() + 1));
+  if (!files.names.empty()) add("names of runs", joined(files.names));
   add("truth_sha256", contents_of(files.truth));
   for (const EstimatorFiles& cell : files.cells)
     add("sha256 of " + cell.cell, contents_of(cell.of_run));
@@ -366,6 +384,10 @@ StudyPlan imported_plan(const JudgedFiles& files, const Overview& all_files,
   plan.scenario = {{"kind", "imported"},
                    {"tolerance", to_text(options.match.tolerance)},
                    {"interpolate", options.match.interpolate ? "yes" : "no"}};
+  if (options.equal_times != EqualTimes::refuse) {
+    plan.scenario.emplace_back("keep",
+                               options.equal_times == EqualTimes::keep_first ? "first" : "last");
+  }
   TextPairs all = settings;
   all.insert(all.end(), plan.scenario.begin() + 1, plan.scenario.end());
   plan.resolved_text = import_text(files, all);
@@ -378,7 +400,7 @@ StudyPlan imported_plan(const JudgedFiles& files, const Overview& all_files,
 }  // namespace
 
 std::vector<std::string> judge_files(const JudgedFiles& files, const JudgingOptions& given) {
-  const Overview all = overview_of(files, given.match.tolerance);
+  const Overview all = overview_of(files, given.match.tolerance, given.equal_times);
   JudgingOptions options = given;
   options.convention = stated_error(all, given.convention);
   const StudyPlan plan = imported_plan(files, all, options);

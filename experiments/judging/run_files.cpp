@@ -2,67 +2,29 @@
 #include "experiments/judging/run_files.hpp"
 
 #include "engine/errors.hpp"
+#include "experiments/judging/run_numbers.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>
 #include <cctype>
 #include <map>
+#include <span>
 
 namespace montecarta::experiments {
 namespace {
 
 namespace fs = std::filesystem;
 
-using RunNumber = std::optional<std::uint64_t>;
-
 /// Largest number of runs, as in a study.
 constexpr std::uint64_t kMostRuns = 10'000'000;
 
-/// Number of the run in a name: 12 for "12", "run_12", "run12" and "ekf_12", nullopt for "ekf2" and
-/// "estimate".
-RunNumber run_in(const std::string& name) {
-  const std::size_t end = name.find_last_not_of("0123456789");
-  const std::size_t begin = end == std::string::npos ? 0 : end + 1;
-  if (begin == name.size()) return std::nullopt;
-  const std::string before = name.substr(0, begin);
-  const bool is_apart = before.empty() || before.ends_with('_') || before.ends_with('-');
-  if (!is_apart && before != "run") return std::nullopt;
-  const RunNumber run = to_count(name.substr(begin));
-  return run && *run < kMostRuns ? run : std::nullopt;
-}
-
-/// The file of one run, and the rest of its path.
-struct FoundFile {
-  fs::path path;
-  RunNumber run;
-  std::vector<std::string> rest;  ///< names of folders and file without the number of the run
-};
-
-FoundFile file_of_run(const fs::path& path) {
-  FoundFile file{path, std::nullopt, {}};
-  std::vector<std::string> names;
-  for (const fs::path& part : path.parent_path().lexically_normal()) names.push_back(part.string());
-  names.push_back(path.stem().string());
-  for (std::size_t k = names.size(); k > 0 && !file.run; --k) {
-    std::string& name = names[k - 1];
-    file.run = run_in(name);
-    if (!file.run) continue;
-    name.erase(name.find_last_not_of("0123456789") + 1);
-    while (name.ends_with('_') || name.ends_with('-')) name.pop_back();
-    if (name == "run") name.clear();
-  }
-  for (std::string& name : names) {
-    if (!name.empty()) file.rest.push_back(std::move(name));
-  }
-  return file;
-}
-
-/// Number of the run in the name of a single truth or of its folder. With a number, the truth
-/// belongs to that run only.
-RunNumber own_run_of(const fs::path& path) {
-  const RunNumber by_name = run_in(path.stem().string());
-  const std::string folder = path.parent_path().filename().string();
-  return by_name || !folder.starts_with("run") ? by_name : run_in(folder);
+/// The number in the name of a single truth or of its folder. With a number, the truth belongs to
+/// that run only.
+RunKey own_run_of(const fs::path& path) {
+  const RunKey by_name = numbered_files({path.filename()}).front().run;
+  const fs::path folder = path.parent_path().filename();
+  if (!by_name.empty() || !folder.string().starts_with("run")) return by_name;
+  return numbered_files({folder / "truth.csv"}).front().run;
 }
 
 /// The files that an argument of --truth stands for.
@@ -86,17 +48,17 @@ std::vector<fs::path> truths_in(const std::string& word) {
                    "truth/run_0000/reference.csv, ...): name that folder, or the files themselves");
 }
 
-using FilesByRun = std::map<std::uint64_t, fs::path>;
+using FilesByRun = std::map<RunKey, fs::path>;
 
-void add_run(const FoundFile& file, FilesByRun& files) {
-  if (!file.run) {
+void add_run(const NumberedFile& file, FilesByRun& files) {
+  if (file.run.empty()) {
     throw StudyError(file.path.string() +
                      ": has no run number (neither the file nor a folder is named after one): " +
                      "name it or its folder e.g. run_0007");
   }
-  const auto [there, is_new] = files.try_emplace(*file.run, file.path);
+  const auto [there, is_new] = files.try_emplace(file.run, file.path);
   if (is_new) return;
-  throw StudyError(file.path.string() + ": run " + std::to_string(*file.run) + " again (" +
+  throw StudyError(file.path.string() + ": run " + to_text(file.run) + " again (" +
                    there->second.string() + " has the same number and the same estimator): " +
                    "give each run a number, each estimator a folder or a name");
 }
@@ -130,10 +92,10 @@ void check_label(const std::string& label) {
                    "folder, or give --cell NAME");
 }
 
-std::map<std::string, FilesByRun> cells_of(const std::vector<FoundFile>& files,
+std::map<std::string, FilesByRun> cells_of(const std::vector<NumberedFile>& files,
                                            const std::optional<std::string>& cell) {
   std::map<std::vector<std::string>, FilesByRun> by_path;
-  for (const FoundFile& file : files) {
+  for (const NumberedFile& file : files) {
     add_run(file, by_path[cell ? std::vector<std::string>{*cell} : file.rest]);
   }
   std::vector<std::vector<std::string>> paths;
@@ -155,23 +117,39 @@ void require_same_runs(const FilesByRun& wanted, const FilesByRun& given, const 
                        const std::string& remedy) {
   for (const auto& [run, file] : wanted) {
     if (given.contains(run)) continue;
-    throw StudyError(file.string() + ": run " + std::to_string(run) + " has no " + of + " (" +
-                     std::to_string(wanted.size()) + " runs there, " +
-                     std::to_string(given.size()) + " here): " + remedy);
+    const auto runs_of = [](const FilesByRun& files) {
+      return std::to_string(files.size()) + (files.size() == 1 ? " run" : " runs");
+    };
+    throw StudyError(file.string() + ": run " + to_text(run) + " has no " + of + " (" +
+                     runs_of(wanted) + " there, " + runs_of(given) + " here): " + remedy);
   }
 }
 
-void require_no_gap(const FilesByRun& runs) {
-  const std::uint64_t first = runs.begin()->first;
+/// Whether keys are numbers of runs without a gap. Throws StudyError if they have a gap, but are
+/// numbers of runs: most are there, and they start at 0 or 1 or are called runs.
+bool are_consecutive(const FilesByRun& runs, bool are_called_runs) {
+  const bool are_numbers = std::ranges::all_of(
+      runs, [](const auto& run) { return run.first.size() == 1 && run.first[0] < kMostRuns; });
+  if (!are_numbers) return false;
+  const std::uint64_t first = runs.begin()->first[0];
+  const std::uint64_t span = runs.rbegin()->first[0] - first + 1;
+  if (span == runs.size()) return true;
+  if (2 * runs.size() <= span || (first > 1 && !are_called_runs)) return false;
   std::uint64_t next = first;
   for (const auto& [run, file] : runs) {
-    if (run != next++) {
-      throw StudyError(file.string() + ": runs " + std::to_string(next - 1) + " to " +
-                       std::to_string(run - 1) +
-                       " are missing (run numbers must be consecutive; a failed run is a "
-                       "result): give a failed run the file that it wrote, the header at least");
+    if (run[0] == next) {
+      ++next;
+      continue;
     }
+    const std::uint64_t last = run[0] - 1;
+    throw StudyError(
+        file.string() + ": " +
+        (next == last ? "run " + std::to_string(next) + " is"
+                      : "runs " + std::to_string(next) + " to " + std::to_string(last) + " are") +
+        " missing (run numbers must be consecutive; a failed run is a result): give "
+        "a failed run the file that it wrote, the header at least");
   }
+  return true;
 }
 
 /// The truth of each run. `is_unnumbered` says that there is one estimate without a number.
@@ -182,17 +160,23 @@ FilesByRun truths_of(const FilesByRun& first, const std::vector<std::string>& tr
     for (fs::path& file : truths_in(word)) truth_files.push_back(std::move(file));
   }
   FilesByRun truth_of;
-  for (const fs::path& file : truth_files) {
-    if (truth_files.size() > 1) add_run(file_of_run(file), truth_of);
+  if (truth_files.size() != 1) {
+    for (const NumberedFile& file : numbered_files(truth_files)) add_run(file, truth_of);
+    return truth_of;
   }
-  if (truth_files.size() == 1) {
-    const RunNumber of_run = own_run_of(truth_files.front());
-    const bool is_of_all = !of_run || (first.size() == 1 && is_unnumbered);
-    for (const auto& [run, file] : first) {
-      if (is_of_all || run == of_run) truth_of.emplace(run, truth_files.front());
-    }
+  const RunKey of_run = own_run_of(truth_files.front());
+  const bool is_of_all = of_run.empty() || (first.size() == 1 && is_unnumbered);
+  for (const auto& [run, file] : first) {
+    if (is_of_all || run == of_run) truth_of.emplace(run, truth_files.front());
   }
   return truth_of;
+}
+
+/// The names of runs whose numbers are not consecutive, in the order in which they are numbered.
+std::vector<std::string> names_of(const FilesByRun& runs) {
+  std::vector<std::string> names;
+  for (const auto& [run, file] : runs) names.push_back(to_text(run));
+  return names;
 }
 
 }  // namespace
@@ -200,21 +184,23 @@ FilesByRun truths_of(const FilesByRun& first, const std::vector<std::string>& tr
 JudgedFiles pair_files(const std::vector<std::string>& estimates,
                        const std::vector<std::string>& truths,
                        const std::optional<std::string>& cell) {
-  std::vector<FoundFile> files;
-  for (const std::string& name : estimates) files.push_back(file_of_run(name));
-  const bool is_unnumbered = files.size() == 1 && !files.front().run;
-  if (is_unnumbered) files.front().run = 0;
+  std::vector<NumberedFile> files =
+      numbered_files(std::vector<fs::path>(estimates.begin(), estimates.end()));
+  const bool is_unnumbered = files.size() == 1 && files.front().run.empty();
+  if (is_unnumbered) files.front().run = {0};
   const std::map<std::string, FilesByRun> cells = cells_of(files, cell);
   const FilesByRun& first = cells.begin()->second;
-  require_no_gap(first);
+  const bool are_called_runs = std::ranges::all_of(files, &NumberedFile::is_called_run);
+  const bool has_numbers = are_consecutive(first, are_called_runs);
   const FilesByRun truth_of = truths_of(first, truths, is_unnumbered);
   require_same_runs(first, truth_of, "truth", "name its truth after --truth too");
   require_same_runs(truth_of, first, "estimate",
                     "give a failed run, which is a result, the file that it wrote, the header at "
                     "least; for fewer runs name only their truths");
   JudgedFiles judged;
+  if (!has_numbers) judged.names = names_of(first);
   for (const auto& [run, file] : truth_of) {
-    judged.runs.push_back(run);
+    judged.runs.push_back(has_numbers ? run[0] : judged.runs.size());
     judged.truth.push_back(file);
   }
   for (const auto& [label, of_run] : cells) {
@@ -227,6 +213,17 @@ JudgedFiles pair_files(const std::vector<std::string>& estimates,
     for (const auto& [run, file] : of_run) one.of_run.push_back(file);
   }
   return judged;
+}
+
+std::string note_on_names(const JudgedFiles& files) {
+  constexpr std::size_t kMostNames = 8;  // shown
+  if (files.names.empty()) return "";
+  const std::size_t shown = std::min(files.names.size(), kMostNames);
+  std::string names = joined(std::span(files.names).first(shown));
+  if (shown < files.names.size()) names += ", ... to " + files.names.back();
+  return "the numbers in the names of the runs are not consecutive (" + names +
+         "): in this order, the runs are called " + std::to_string(files.runs.front()) + " to " +
+         std::to_string(files.runs.back());
 }
 
 }  // namespace montecarta::experiments

@@ -17,7 +17,10 @@ struct EstimatorFiles {
 
 /// Estimates and truths, matched by run.
 struct JudgedFiles {
-  std::vector<std::uint64_t> runs;           ///< numbers of the runs, consecutive and increasing
+  std::vector<std::uint64_t> runs;  ///< numbers of the runs, consecutive and increasing
+  /// {run} numbers in the names of the files, e.g. seeds, if they are not consecutive and the runs
+  /// are numbered from 0 instead; else empty.
+  std::vector<std::string> names;
   std::vector<std::filesystem::path> truth;  ///< {run} files of the truth
   std::vector<EstimatorFiles> cells;         ///< files of the cells, ordered by label
 };
@@ -28,5 +31,8 @@ struct JudgedFiles {
 JudgedFiles pair_files(const std::vector<std::string>& estimates,
                        const std::vector<std::string>& truths,
                        const std::optional<std::string>& cell);
+
+/// A sentence on runs that are numbered anew; empty if they are not.
+std::string note_on_names(const JudgedFiles& files);
 
 }  // namespace montecarta::experiments

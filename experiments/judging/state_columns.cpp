@@ -27,6 +27,9 @@ const StateShape& pose_in_space_shape() {
 
 const std::string kCovariancePrefix = "cov_";
 const Names kPoseColumns = {"x_m", "y_m", "heading_rad"};
+/// Other names of the heading, each followed by _rad.
+const Names kOtherHeadings = {"yaw", "theta", "psi", "phi"};
+const std::string kHeadingColumn = kPoseColumns.back();
 const Names kQuaternionColumns = {"qx", "qy", "qz", "qw"};
 const std::string kNis = "nis", kNisDof = "nis_dof";
 constexpr std::array kKnownUnits = {"m", "rad", "mps", "mps2", "radps", "s"};
@@ -40,6 +43,34 @@ bool has_name(const Names& names, const std::string& name) {
 
 std::size_t place_of_name(const Names& names, const std::string& name) {
   return static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
+}
+
+/// The heading in the names of columns: heading_rad, or another name of it. Empty if there is none,
+/// or if there are several other names.
+std::string heading_in(const Names& columns) {
+  if (has_name(columns, kHeadingColumn)) return kHeadingColumn;
+  std::string found;
+  for (const std::string& name : kOtherHeadings) {
+    if (!has_name(columns, name + "_rad")) continue;
+    if (!found.empty()) return "";
+    found = name + "_rad";
+  }
+  return found;
+}
+
+/// The names of a state, where another name of the heading of a pose is replaced by its usual one.
+Names usual_names(Names state) {
+  const std::string heading = heading_in(state);
+  if (state.size() == kPoseColumns.size() && !heading.empty()) {
+    std::ranges::replace(state, heading, kHeadingColumn);
+  }
+  return state;
+}
+
+/// Index in a header of a column of a state of this kind; the size of the header if it has none.
+std::size_t place_of_column(const Names& header, const std::string& column, StateKind kind) {
+  const bool is_heading = kind == StateKind::pose && column == kHeadingColumn;
+  return place_of_name(header, is_heading ? heading_in(header) : column);
 }
 
 void check_header(const Names& header, const std::string& place) {
@@ -58,15 +89,32 @@ void check_header(const Names& header, const std::string& place) {
   }
 }
 
+/// Throws StudyError if a column ends with the name of a unit that is not read.
+void refuse_other_units(const std::string& column, const std::string& component,
+                        const std::string& unit, const std::string& place) {
+  const Names degrees = {"deg", "degs", "degree", "degrees"}, radians = {"radian", "radians"},
+              metres = {"meter", "meters", "metre", "metres"}, lengths = {"mm", "cm", "km", "ft"};
+  if (has_name(degrees, unit)) {
+    throw StudyError(place + ": '" + excerpt(column) +
+                     "' is in degrees (angles are in rad): convert it and its covariance");
+  }
+  const bool is_radians = has_name(radians, unit);
+  if (is_radians || has_name(metres, unit)) {
+    throw StudyError(place + ": '" + excerpt(column) + "' has a unit that is not read (rad and m " +
+                     "are): rename it to " + component + (is_radians ? "_rad" : "_m"));
+  }
+  if (has_name(lengths, unit) && has_name(kNeedUnit, component)) {
+    throw StudyError(place + ": '" + excerpt(column) + "' is in " + unit +
+                     " (positions are in m): convert it and its covariance");
+  }
+}
+
 /// Component and unit in a column name such as "vx_mps".
 std::pair<std::string, std::string> component_and_unit(const std::string& column,
                                                        const std::string& place) {
   const std::size_t underscore = column.rfind('_');
   const std::string unit = underscore == std::string::npos ? "" : column.substr(underscore + 1);
-  if (unit == "deg") {
-    throw StudyError(place + ": '" + excerpt(column) +
-                     "' is in degrees (angles are in rad): convert it and its covariance");
-  }
+  refuse_other_units(column, column.substr(0, underscore), unit, place);
   if (has_name(kNeedUnit, column)) {
     throw StudyError(place + ": '" + column + "' has no unit (m and rad are part of the name): " +
                      "write x_m, y_m, heading_rad");
@@ -86,7 +134,7 @@ StateShape shape_of(const Names& state, const std::string& place) {
     throw StudyError(place + ": no state (the header has times and covariances alone): add e.g. " +
                      joined(kPoseColumns, ","));
   }
-  if (is_same_set(state, kPoseColumns)) {
+  if (is_same_set(usual_names(state), kPoseColumns)) {
     return {StateKind::pose, kPoseColumns, {"x", "y", "heading"}, {"m", "m", "rad"}};
   }
   if (is_same_set(state, pose_in_space_shape().columns)) {
@@ -116,13 +164,23 @@ StateShape shape_of(const Names& state, const std::string& place) {
 
 /// Row and column of the covariance for every name that an element may have in the header.
 std::map<std::string, std::pair<std::size_t, std::size_t>> names_of_elements(
-    const StateShape& shape) {
+    const Names& header, const StateShape& shape) {
   std::map<std::string, std::pair<std::size_t, std::size_t>> elements;
-  for (std::size_t i = 0; i < shape.dimension(); ++i) {
-    for (std::size_t j = 0; j < shape.dimension(); ++j) {
-      elements[kCovariancePrefix + shape.components[i] + "_" + shape.components[j]] = {i, j};
-      elements[kCovariancePrefix + std::to_string(i) + "_" + std::to_string(j)] = {i, j};
+  const auto add = [&](const Names& components) {
+    for (std::size_t i = 0; i < components.size(); ++i) {
+      for (std::size_t j = 0; j < components.size(); ++j) {
+        elements[kCovariancePrefix + components[i] + "_" + components[j]] = {i, j};
+      }
     }
+  };
+  Names indices, own = shape.components;
+  for (std::size_t i = 0; i < own.size(); ++i) indices.push_back(std::to_string(i));
+  add(indices);
+  add(own);
+  if (shape.kind == StateKind::pose) {
+    const std::string heading = heading_in(header);
+    own.back() = heading.substr(0, heading.rfind('_'));
+    add(own);
   }
   return elements;
 }
@@ -130,7 +188,7 @@ std::map<std::string, std::pair<std::size_t, std::size_t>> names_of_elements(
 std::vector<std::size_t> covariance_fields(const Names& header, const StateShape& shape,
                                            const std::string& place) {
   const std::size_t d = shape.dimension();
-  const auto elements = names_of_elements(shape);
+  const auto elements = names_of_elements(header, shape);
   std::vector<std::optional<std::size_t>> found(d * d);
   for (std::size_t f = 0; f < header.size(); ++f) {
     if (!header[f].starts_with(kCovariancePrefix)) continue;
@@ -219,7 +277,7 @@ EstimateFields estimate_fields(const Names& header, const std::string& place) {
     fields.nis_dof = place_of_name(header, kNisDof);
   }
   for (const std::string& column : fields.shape.columns)
-    fields.state.push_back(place_of_name(header, column));
+    fields.state.push_back(place_of_column(header, column, fields.shape.kind));
   fields.covariance = covariance_fields(header, fields.shape, place);
   return fields;
 }
@@ -247,12 +305,12 @@ std::vector<std::size_t> truth_fields(const Names& header, const StateShape& sha
   check_header(header, place);
   std::vector<std::size_t> fields;
   for (const std::string& column : shape.columns) {
-    if (!has_name(header, column)) {
+    fields.push_back(place_of_column(header, column, shape.kind));
+    if (fields.back() == header.size()) {
       throw StudyError(place + ": no column " + column +
                        " (the truth of everything that is estimated is needed): add it, or leave "
                        "it out of the estimates");
     }
-    fields.push_back(place_of_name(header, column));
   }
   return fields;
 }
@@ -287,6 +345,24 @@ std::pair<double, std::uint32_t> nis_in(const CsvRows& file, const EstimateField
                                                         covariance_in(file, fields));
   const auto dimension = static_cast<std::uint32_t>(fields.shape.dimension());
   return {sample.value, sample.is_usable() ? static_cast<std::uint32_t>(sample.rank) : dimension};
+}
+
+std::string likeness_to_pose(const StateShape& shape) {
+  if (shape.kind != StateKind::vector || !has_name(shape.columns, kPoseColumns[0]) ||
+      !has_name(shape.columns, kPoseColumns[1])) {
+    return "";
+  }
+  Names angles;
+  for (const std::string& column : shape.columns) {
+    if (column.ends_with("_rad")) angles.push_back(column);
+  }
+  if (angles.empty()) return "";
+  const std::string columns = "it has " + joined(shape.columns, ",") + ", and a pose is ";
+  if (angles.size() > 1 || shape.width() > kPoseColumns.size()) {
+    return columns + joined(kPoseColumns, ",") + " alone";
+  }
+  return columns + joined(kPoseColumns, ",") + ": if it is a pose, rename " + angles.front() +
+         " to " + kHeadingColumn;
 }
 
 bool is_angle(const StateShape& shape, Eigen::Index k) {

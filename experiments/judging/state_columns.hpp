@@ -16,7 +16,8 @@ namespace montecarta::experiments {
 
 /// The kind of state that an estimator estimates.
 enum class StateKind {
-  pose,           ///< pose in the plane: x_m, y_m, heading_rad
+  /// Pose in the plane: x_m, y_m, heading_rad, which may also be called yaw, theta, psi or phi.
+  pose,
   pose_in_space,  ///< x_m, y_m, z_m and the quaternion qx, qy, qz, qw; its error has six components
   vector          ///< any other state, in R^n
 };
@@ -77,6 +78,10 @@ std::pair<double, std::uint32_t> nis_in(const CsvRows& file, const EstimateField
 
 /// Whether element `k` of a state is an angle, which is the same after a full turn.
 bool is_angle(const StateShape& shape, Eigen::Index k);
+
+/// For a vector with x_m, y_m and an angle, which may be meant as a pose: its columns, and what
+/// they lack to be one. Empty for other states.
+std::string likeness_to_pose(const StateShape& shape);
 
 /// Index of the quaternion in the state of a pose in space, behind x, y, z.
 inline constexpr Eigen::Index kQuaternionPlace = 3;

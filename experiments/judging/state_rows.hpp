@@ -7,11 +7,13 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <string>
 #include <vector>
 
 namespace montecarta::experiments {
+
+/// The row that is kept if neighbouring rows have the same time: none, which is an error, or one.
+enum class EqualTimes : std::uint8_t { refuse, keep_first, keep_last };
 
 /// Estimates or truths of one run, as read from a file.
 struct StateRows {
@@ -23,16 +25,8 @@ struct StateRows {
   std::vector<std::uint32_t> nis_dof = {};       ///< {row} empty if the file has none
   std::uint64_t unwrapped_innovations = 0;       ///< number of innovations with an angle beyond pi
   std::string first_unwrapped = {};              ///< file and line of the first of them
+  std::vector<std::size_t> line = {};            ///< {row} line in the file
+  std::uint64_t left_out = 0;                    ///< number of rows not kept because of EqualTimes
 };
-
-/// Reads estimates (mean and covariance over time) from CSV. Throws StudyError with file, line and
-/// remedy if the file is empty or damaged, or a number is not finite.
-StateRows read_estimates(const std::filesystem::path& path);
-
-/// {row} The times [s] in a file of estimates. Throws StudyError if they do not increase.
-std::vector<double> times_in(const std::filesystem::path& path);
-
-/// Reads a truth of the same state; other columns are ignored. Throws like read_estimates().
-StateRows read_truth(const std::filesystem::path& path, const StateShape& shape);
 
 }  // namespace montecarta::experiments

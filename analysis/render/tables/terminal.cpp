@@ -68,8 +68,9 @@ void print_head(std::ostream& out, const StudyAnalysis& study, std::size_t width
   const std::string runs =
       std::to_string(study.runs_here) +
       (study.runs_here == study.study_runs ? "" : " of " + std::to_string(study.study_runs));
-  out << engine::wrapped(study.study_name + ": " + runs + " runs, " + study.scans_text() +
-                             ", seed " + std::to_string(study.seed),
+  const std::string noun = study.runs_here == 1 && study.study_runs == 1 ? " run, " : " runs, ";
+  out << engine::wrapped(study.study_name + ": " + runs + noun + study.scans_text() + ", seed " +
+                             std::to_string(study.seed),
                          width)
       << '\n';
   if (study.has_failures()) print_failures(out, study, width);

@@ -2,6 +2,7 @@
 // Damaged studies, worlds, estimates and recorded drives: read, or refused with the name of the
 // file.
 #include "experiments/judging/innovation_rows.hpp"
+#include "experiments/judging/read_rows.hpp"
 #include "experiments/recordings/drive_log.hpp"
 #include "experiments/recordings/log_csv.hpp"
 #include "experiments/study/study.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/numbers/angle.hpp"
 #include "experiments/judging/innovation_rows.hpp"
-#include "experiments/judging/run_files.hpp"
+#include "experiments/judging/read_rows.hpp"
 #include "experiments/judging/truth_path.hpp"
 #include "tests/doubles/complaint.hpp"
 #include "tests/doubles/matchers.hpp"
@@ -80,7 +80,7 @@ TEST_F(StateFiles, AreRefusedWithFileLineAndRemedy) {
   EXPECT_THAT(complaint(kPoseHeader + "0.5,1,2,3,11,inf,22,13,23,33\n"), HasSubstr(":2: 'inf'"));
   EXPECT_THAT(complaint(kPoseHeader + "0.5,1,\x01\xff,3,11,12,22,13,23,33\n"), HasSubstr(":2: '"));
   EXPECT_THAT(complaint(kPoseHeader + "0.5,1,2,3,11,12,22,13,23,33"), HasSubstr(":2: the last"));
-  EXPECT_THAT(complaint(kPoseHeader + kRow + kRow), HasSubstr(":3: time 0.5 s comes after 0.5 s"));
+  EXPECT_THAT(complaint(kPoseHeader + kRow + kRow), HasSubstr(":3: equal times 0.5 s"));
   EXPECT_THAT(complaint("time_s,x_m\n1,1\n"), HasSubstr(":1: no cov_x_x"));
   EXPECT_THAT(complaint("time_s,x_m,cov_x_x,cov_1_1\n"), HasSubstr("'cov_1_1' is no element"));
   EXPECT_THAT(complaint("time_s,x_m,cov_x_x,cov_0_0\n"), HasSubstr("by name and by index"));
@@ -89,6 +89,73 @@ TEST_F(StateFiles, AreRefusedWithFileLineAndRemedy) {
   EXPECT_THAT(complaint("time_s,x_m,x_m\n"), HasSubstr("column 3 'x_m'"));
   EXPECT_THAT(complaint("time_s,x_m,qx,qy\n"), HasSubstr("a quaternion, but"));
   EXPECT_THAT(complaint("time_s,cov_x_x\n"), HasSubstr("no state"));
+}
+
+// Digits were lost, or there are two estimates of one time.
+TEST_F(StateFiles, WithEqualTimesAreRefusedOrReadByARule) {
+  const std::string header = "time_s,x_m,cov_0_0\n";
+  const auto text = [&](const std::string& a, const std::string& b) {
+    return header + a + ",1,1\n" + a + ",2,2\n" + b + ",3,3\n";
+  };
+  EXPECT_THAT(complaint(text("1.403637e+09", "1.4037e+09")),
+              AllOf(HasSubstr(":3: equal times 1.403637e+09 s"), HasSubstr("7 digits"),
+                    HasSubstr("15 digits"), HasSubstr("--keep last"), Not(HasSubstr("sort"))));
+  EXPECT_THAT(complaint(text("1604644894.000", "1604644895.0")), HasSubstr("whole seconds"));
+  EXPECT_THAT(complaint(text("0.25", "0.5")), Not(HasSubstr("digits are printed")));
+  written(text("0.25", "0.5"));
+  const StateRows last = read_estimates(path_, EqualTimes::keep_last);
+  EXPECT_THAT(last.time, ElementsAre(0.25, 0.5));
+  EXPECT_THAT(last.line, ElementsAre(3U, 4U));
+  EXPECT_EQ(last.state[0](0), 2.0);
+  EXPECT_EQ(last.left_out, 1U);
+  EXPECT_THAT(times_in(path_, EqualTimes::keep_last), ElementsAre(0.25, 0.5));
+  const StateRows first = read_estimates(path_, EqualTimes::keep_first);
+  EXPECT_EQ(first.state[0](0), 1.0);
+  EXPECT_EQ(first.covariance[0](0, 0), 1.0);
+  EXPECT_EQ(read_truth(path_, first.shape, EqualTimes::keep_last).state[0](0), 2.0);
+  EXPECT_THROW(read_truth(path_, first.shape), StudyError);
+}
+
+TEST_F(StateFiles, MayCallTheHeadingByAnotherName) {
+  for (const std::string name : {"yaw", "theta", "psi", "phi"}) {
+    const std::string triangle = ",cov_x_x,cov_x_y,cov_y_y,cov_x_" + name + ",cov_y_" + name +
+                                 ",cov_" + name + "_" + name + "\n";
+    const StateRows rows = read_estimates(
+        written("time_s,x_m," + name + "_rad,y_m" + triangle + "0.5,1,3,2,11,12,22,13,23,33\n"));
+    EXPECT_EQ(rows.shape, read_estimates(written(kPoseHeader + kRow)).shape);
+    EXPECT_EQ(rows.state[0], Eigen::Vector3d(1, 2, 3));
+    EXPECT_EQ(rows.covariance[0](2, 1), 23.0);
+    const std::string other = name == "yaw" ? "heading" : "yaw";
+    const StateRows truth =
+        read_truth(written("time_s,x_m,y_m," + other + "_rad\n0.5,1,2,3\n"), rows.shape);
+    EXPECT_EQ(truth.state[0], Eigen::Vector3d(1, 2, 3));
+  }
+  EXPECT_THAT(likeness_to_pose(read_estimates(written("time_s,x_m,alpha_rad,y_m,cov_0_0,cov_0_1,"
+                                                      "cov_0_2,cov_1_1,cov_1_2,cov_2_2\n"))
+                                   .shape),
+              HasSubstr("rename alpha_rad to heading_rad"));
+  EXPECT_EQ(likeness_to_pose({StateKind::vector, {"a_m", "b_rad"}, {"a", "b"}, {"m", "rad"}}), "");
+}
+
+TEST_F(StateFiles, InOtherUnitsAreRefused) {
+  EXPECT_THAT(complaint("time_s,x_m,y_m,yaw_degrees\n"), HasSubstr("is in degrees"));
+  EXPECT_THAT(complaint("time_s,x_m,y_m,yaw_radians\n"), HasSubstr("rename it to yaw_rad"));
+  EXPECT_THAT(complaint("time_s,x_meters,y_m\n"), HasSubstr("rename it to x_m"));
+  EXPECT_THAT(complaint("time_s,x_cm,y_cm,heading_rad\n"), HasSubstr("is in cm"));
+}
+
+TEST_F(StateFiles, WithOtherSeparatorsAreNamed) {
+  EXPECT_THAT(complaint("time_s;x_m;cov_0_0\n0,5;1;1\n"),
+              AllOf(HasSubstr(":1: semicolons"), HasSubstr("decimal points")));
+  EXPECT_THAT(complaint("time_s\tx_m\tcov_0_0\n"), HasSubstr(":1: tabs"));
+  EXPECT_THAT(complaint("time_s x_m cov_0_0\n"), HasSubstr(":1: blanks"));
+  EXPECT_THAT(complaint("\"time_s\",\"x_m\"\n"), HasSubstr(":1: names in quotes"));
+  const std::string header = "time_s,x_m,cov_0_0\n";
+  EXPECT_THAT(complaint(header + "0.5;1;1\n"), HasSubstr(":2: semicolons"));
+  EXPECT_THAT(complaint(header + "\"0,5\",\"1,5\",\"1\"\n"), HasSubstr(":2: numbers in quotes"));
+  EXPECT_THAT(complaint(header + "0,5,1,5,1\n"), HasSubstr(":2: decimal commas"));
+  EXPECT_THAT(complaint(header + "0.5,1.5,1.0,2\n"), HasSubstr(":2: 4 fields"));
+  EXPECT_THAT(complaint(header + "\"0.5\",1,1\n"), HasSubstr("remove the quotes"));
 }
 
 TEST_F(StateFiles, MayHaveInnovations) {
@@ -211,63 +278,6 @@ TEST_F(InnovationFiles, LieBesideTheirEstimates) {
   EXPECT_EQ(innovations_beside(folder_ / "estimate_ekf.txt"), folder_ / "innovation_ekf.csv");
   EXPECT_EQ(innovations_beside(folder_ / "estimate.csv"), std::nullopt);
   EXPECT_EQ(innovations_beside(folder_ / "ekf.csv"), std::nullopt);
-}
-
-using Names = std::vector<std::string>;
-
-const Names kTruths = {"t/run_3/truth.csv", "t/run_4/truth.csv"};
-
-Names labels(const Names& estimates, const Names& truths = kTruths) {
-  Names found;
-  for (const EstimatorFiles& cell : pair_files(estimates, truths, std::nullopt).cells)
-    found.push_back(cell.cell);
-  return found;
-}
-
-std::string refusal(const Names& estimates, const Names& truths = kTruths) {
-  return complaint_of([&] { pair_files(estimates, truths, std::nullopt); });
-}
-
-TEST(RunFiles, ArePairedByNumber) {
-  const JudgedFiles files = pair_files({"r/run_4/e.csv", "r/run_3/e.csv"}, kTruths, "mine");
-  EXPECT_THAT(files.runs, ElementsAre(3, 4));
-  EXPECT_THAT(files.truth, ElementsAre(kTruths[0], kTruths[1]));
-  ASSERT_EQ(files.cells.size(), 1U);
-  EXPECT_EQ(files.cells[0].cell, "mine");
-  EXPECT_THAT(files.cells[0].of_run, ElementsAre("r/run_3/e.csv", "r/run_4/e.csv"));
-}
-
-TEST(RunFiles, NameTheirEstimator) {
-  EXPECT_THAT(labels({"r/run_3/estimate.csv", "r/run_4/estimate.csv"}), ElementsAre("estimate"));
-  EXPECT_THAT(labels({"ekf/run_3.csv", "ekf/run_4.csv"}), ElementsAre("ekf"));
-  EXPECT_THAT(labels({"ekf/3/e.csv", "ekf/4/e.csv", "pf/3/e.csv", "pf/4/e.csv"}),
-              ElementsAre("ekf", "pf"));
-  EXPECT_THAT(labels({"r/run_3/ekf2.csv", "r/run_4/ekf2.csv", "r/run_3/pf.csv", "r/run_4/pf.csv"}),
-              ElementsAre("ekf2", "pf"));
-  EXPECT_THAT(labels({"ekf_3.csv", "ekf_4.csv", "pf_3.csv", "pf_4.csv"}), ElementsAre("ekf", "pf"));
-}
-
-TEST(RunFiles, ThatDoNotFitAreNamed) {
-  EXPECT_THAT(refusal({"r/run_3/e.csv"}), HasSubstr("t/run_4/truth.csv: run 4 has no estimate"));
-  EXPECT_THAT(refusal({"r/run_3/e.csv", "r/run_4/e.csv", "r/run_5/e.csv"}),
-              HasSubstr("r/run_5/e.csv: run 5 has no truth"));
-  EXPECT_THAT(refusal({"r/run_3/e.csv", "r/run_5/e.csv"}), HasSubstr("r/run_5/e.csv: runs 4"));
-  EXPECT_THAT(refusal({"a.csv", "b.csv"}), HasSubstr("a.csv: has no run number"));
-  EXPECT_THAT(refusal({"r/run_3.csv", "r/run_03.csv"}), HasSubstr("run 3 again"));
-  EXPECT_THAT(refusal({"a/run_3.csv", "a/run_4.csv", "b/run_3.csv"}), HasSubstr("run 4 has no"));
-  EXPECT_THAT(refusal({"a b/run_3.csv", "a b/run_4.csv"}), HasSubstr("cannot label a cell"));
-}
-
-TEST(PairFiles, GivesASingleTruthToAllRunsUnlessItIsOfOne) {
-  const Names estimates = {"e/1.csv", "e/2.csv"};
-  EXPECT_EQ(pair_files(estimates, {"truth.csv"}, std::nullopt).truth[1], "truth.csv");
-  EXPECT_THAT(pair_files({"mine.csv"}, {"truth.csv"}, std::nullopt).runs, ElementsAre(0));
-  EXPECT_EQ(pair_files(estimates, {"2026/truth.csv"}, std::nullopt).truth.size(), 2U);
-  EXPECT_THAT(refusal(estimates, {"t/run_0000/reference.csv"}), HasSubstr("has no truth"));
-  EXPECT_THAT(refusal(estimates, {"t/run_0001/reference.csv"}), HasSubstr("run 2 has no truth"));
-  EXPECT_THAT(refusal({"e/99999999999.csv", "e/2.csv"}), HasSubstr("has no run number"));
-  const JudgedFiles alone = pair_files({"mine.csv"}, {"t/run_0007/reference.csv"}, std::nullopt);
-  EXPECT_EQ(alone.truth.size(), 1U);
 }
 
 }  // namespace

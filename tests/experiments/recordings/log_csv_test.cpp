@@ -217,7 +217,7 @@ TEST_F(ChangedLog, NeedsEachPart) {
 
 TEST_F(ChangedLog, NeedsTimesThatIncrease) {
   expect_complaints({
-      {"odometry.csv", kOdometry + "0.1,1,0\n0.1,1,0\n", "odometry.csv:3: time 0.1 s comes after"},
+      {"odometry.csv", kOdometry + "0.1,1,0\n0.1,1,0\n", "odometry.csv:3: equal times 0.1 s"},
       {"detections.csv", kScans + "0.1,5,0,0\n0.2,5,0,1\n0.15,5,0,1\n", "detections.csv:4: time"},
       {"reference.csv", kPoses + "0,0,0,0\n-1,0,0,0\n", "reference.csv:3: time -1 s"},
       {"odometry.csv", kOdometry + "1e12,1,0\n", "odometry.csv:2: time 1e+12 (seconds"},

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/judging/likely_mistakes.hpp"
+
+#include "engine/text/number_text.hpp"
+#include "experiments/judging/angle_units.hpp"
+#include "experiments/judging/time_units.hpp"
+#include "experiments/text/words.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+namespace montecarta::experiments {
+namespace {
+
+/// Least ratio of variances of which the larger or the smaller one may be a mark.
+constexpr double kFarApart = 1e4;
+/// Marks of "unknown" are at least this large: 9999, 1e6, the largest double.
+constexpr double kLeastHuge = 9999.0;
+/// Marks of "fixed" are at most this large, and powers of ten: 1e-6, 1e-9.
+constexpr double kMostTiny = 1e-6;
+
+bool is_power_of_ten(double value) {
+  const double exponent = std::round(std::log10(value));
+  return std::abs(value / std::pow(10.0, exponent) - 1.0) < 1e-9;
+}
+
+bool is_huge(const Eigen::VectorXd& variances, Eigen::Index i) {
+  if (variances(i) < kLeastHuge) return false;
+  return std::ranges::any_of(
+      variances, [&](double other) { return other > 0.0 && other <= variances(i) / kFarApart; });
+}
+
+/// The variances of a vector may have units so different that a small one says nothing, unless it
+/// is a power of ten.
+bool is_tiny(const Eigen::VectorXd& variances, Eigen::Index i, StateKind kind) {
+  if (!(variances(i) > 0.0 && variances(i) <= kMostTiny)) return false;
+  if (kind == StateKind::vector && !is_power_of_ten(variances(i))) return false;
+  return std::ranges::any_of(variances, [&](double other) {
+    return other >= variances(i) * kFarApart && other < kLeastHuge;
+  });
+}
+
+/// Whether a row equals the truth of the same time, number by number.
+bool is_copy(const StateRows& rows, std::size_t row, const StateRows& truth) {
+  const auto same = std::ranges::lower_bound(truth.time, rows.time[row]);
+  if (same == truth.time.end() || *same != rows.time[row]) return false;
+  return truth.state[static_cast<std::size_t>(same - truth.time.begin())] == rows.state[row];
+}
+
+std::size_t nearest_row(const StateRows& truth, double time) {
+  const auto after = std::ranges::lower_bound(truth.time, time);
+  const auto k = static_cast<std::size_t>(after - truth.time.begin());
+  if (k == 0) return 0;
+  return k < truth.time.size() && truth.time[k] - time < time - truth.time[k - 1] ? k : k - 1;
+}
+
+/// [rad] Angle between two rotations, given as unit quaternions.
+double angle_between(const Eigen::Vector4d& a, const Eigen::Vector4d& b) {
+  return 2.0 * std::acos(std::min(std::abs(a.dot(b)), 1.0));
+}
+
+/// The quaternion x, y, z, w of numbers that are w, x, y, z.
+Eigen::Vector4d from_w_first(const Eigen::Vector4d& q) { return {q(1), q(2), q(3), q(0)}; }
+
+std::string of_rows(std::uint64_t some, std::uint64_t all) {
+  return std::to_string(some) + " of " + std::to_string(all) + " rows";
+}
+
+/// The columns of a state without some of its components.
+std::string remaining(const StateShape& shape, const std::vector<std::string>& names) {
+  const auto has = [&](const char* name) { return std::ranges::count(names, name) > 0; };
+  if (shape.kind != StateKind::vector) {
+    const bool is_planar = has("z") && has("rx") && has("ry") && names.size() == 3;
+    return is_planar ? "x_m,y_m,heading_rad" : "the others";
+  }
+  std::vector<std::string> columns;
+  for (std::size_t k = 0; k < shape.width(); ++k) {
+    if (!has(shape.components[k].c_str())) columns.push_back(shape.columns[k]);
+  }
+  return columns.empty() ? "the others" : joined(columns, ",");
+}
+
+}  // namespace
+
+LikelyMistakes::LikelyMistakes(const JudgedFiles& files) : on_names_(note_on_names(files)) {
+  for (const EstimatorFiles& cell : files.cells) cells_.emplace_back().label = cell.cell;
+}
+
+void LikelyMistakes::compare_quaternions(const StateRows& rows, std::size_t row,
+                                         const StateRows& truth, OfCell& cell) {
+  const Eigen::Vector4d true_one = truth.state[nearest_row(truth, rows.time[row])].tail<4>();
+  const Eigen::Vector4d own = rows.state[row].tail<4>();
+  cell.as_stated += angle_between(own, true_one);
+  cell.w_first[0] += angle_between(from_w_first(own), true_one);
+  cell.w_first[1] += angle_between(own, from_w_first(true_one));
+}
+
+void LikelyMistakes::add_truth(const StateRows& truth, const std::filesystem::path& path) {
+  if (on_angles_.empty()) on_angles_ = note_on_angles(truth, path);
+  if (truth.left_out > 0 && left_out_ == 0) first_left_out_ = path.string();
+  left_out_ += truth.left_out;
+}
+
+void LikelyMistakes::mark(const StateRows& rows, std::size_t row, const std::string& place,
+                          OfCell& cell) {
+  const Eigen::VectorXd variances = rows.covariance[row].diagonal();
+  for (Eigen::Index i = 0; i < variances.size(); ++i) {
+    const double value = variances(i);
+    const std::array<bool, kSigns> found = {value < 0.0, value == 0.0, is_huge(variances, i),
+                                            is_tiny(variances, i, rows.shape.kind)};
+    for (std::size_t sign = 0; sign < kSigns; ++sign) {
+      if (!found[sign]) continue;
+      Marked& marked = cell.marked[static_cast<std::size_t>(i)][sign];
+      if (marked.rows++ == 0) {
+        marked.value = value;
+        marked.first = place;
+      }
+      marked.varies = marked.varies || value != marked.value;
+    }
+  }
+}
+
+void LikelyMistakes::add(std::size_t cell, const StateRows& rows, const std::filesystem::path& path,
+                         const StateRows& truth) {
+  if (on_angles_.empty()) on_angles_ = note_on_angles(rows, path);
+  if (on_times_.empty()) on_times_ = note_on_times(rows, path);
+  if (rows.left_out > 0 && left_out_ == 0) first_left_out_ = path.string();
+  left_out_ += rows.left_out;
+  OfCell& of_cell = cells_[cell];
+  of_cell.shape = rows.shape;
+  of_cell.marked.resize(rows.shape.dimension());
+  of_cell.rows += rows.time.size();
+  for (std::size_t row = 0; row < rows.time.size(); ++row) {
+    const std::string place = path.string() + ":" + std::to_string(rows.line[row]);
+    mark(rows, row, place, of_cell);
+    if (rows.shape.kind == StateKind::pose_in_space) {
+      compare_quaternions(rows, row, truth, of_cell);
+    }
+    if (is_copy(rows, row, truth) && of_cell.copies++ == 0) of_cell.first_copy = place;
+  }
+}
+
+void LikelyMistakes::add_notes(const OfCell& cell, std::vector<std::string>& notes) const {
+  const std::array<const char*, kSigns> reasons = {
+      "no variance is negative: is it a mark of what is not estimated?",
+      "such components are in no test; is it a mark of what is not estimated?",
+      "much larger than the others: is it a mark of what is not estimated?",
+      "much smaller than the others: is it a mark of what is not estimated?"};
+  for (std::size_t sign = 0; sign < kSigns; ++sign) {
+    const bool must_be_constant = sign == huge || sign == tiny;
+    std::vector<std::string> names;
+    const Marked* first = nullptr;
+    for (std::size_t k = 0; k < cell.marked.size(); ++k) {
+      const Marked& marked = cell.marked[k][sign];
+      if (marked.rows == 0 || (must_be_constant && marked.varies)) continue;
+      if (sign != negative && 2 * marked.rows < cell.rows) continue;
+      names.push_back(cell.shape.components[k]);
+      if (first == nullptr || marked.rows > first->rows) first = &marked;
+    }
+    if (names.empty() || (sign != negative && names.size() == cell.marked.size())) {
+      continue;
+    }
+    notes.push_back(cell.label + ": " + joined(names) +
+                    (names.size() == 1 ? " has the variance " : " have the variance ") +
+                    to_text(first->value) + " in " + of_rows(first->rows, cell.rows) +
+                    ", the first in " + first->first + " (" + reasons[sign] +
+                    "): for a verdict on the others, write files with " +
+                    remaining(cell.shape, names) + " alone");
+  }
+  for (std::size_t k = 0; k < cell.w_first.size(); ++k) {
+    constexpr double kMuchNearer = 0.2;
+    if (!(cell.w_first[k] < kMuchNearer * cell.as_stated)) continue;
+    const auto mean = [&](double sum) { return compact(sum / static_cast<double>(cell.rows)); };
+    notes.push_back(cell.label + ": the quaternions of the " + (k == 0 ? "estimates" : "truth") +
+                    " may be written with w first, under the header qx,qy,qz,qw (rotations would " +
+                    "then be " + mean(cell.w_first[k]) +
+                    " rad from the truth on average, and are " + mean(cell.as_stated) +
+                    " rad): write x, y, z, w");
+  }
+  if (10 * cell.copies > cell.rows) {
+    notes.push_back(cell.label + ": the estimates equal the truth, number by number, in " +
+                    of_rows(cell.copies, cell.rows) + ", the first in " + cell.first_copy +
+                    ": are they a copy of it?");
+  }
+}
+
+std::vector<std::string> LikelyMistakes::notes() const {
+  std::vector<std::string> notes;
+  std::ranges::copy_if(std::vector{on_names_, on_times_, on_angles_}, std::back_inserter(notes),
+                       [](const std::string& note) { return !note.empty(); });
+  if (left_out_ > 0) {
+    notes.push_back(std::to_string(left_out_) + (left_out_ == 1 ? " row is" : " rows are") +
+                    " left out by --keep, the first in " + first_left_out_ +
+                    " (another row has the same time)");
+  }
+  for (const OfCell& cell : cells_) add_notes(cell, notes);
+  return notes;
+}
+
+}  // namespace montecarta::experiments

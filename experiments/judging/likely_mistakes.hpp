@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "experiments/judging/run_files.hpp"
+#include "experiments/judging/state_rows.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace montecarta::experiments {
+
+/// Contents of files that are judged as they are, but are likely a mistake: variances that mark a
+/// component as unknown, quaternions with w first, estimates that are a copy of the truth, rows of
+/// one time, units.
+class LikelyMistakes {
+ public:
+  explicit LikelyMistakes(const JudgedFiles& files);
+
+  void add_truth(const StateRows& truth, const std::filesystem::path& path);
+  /// Adds one file of the estimator `cell` of JudgedFiles::cells, with the truth of its run.
+  void add(std::size_t cell, const StateRows& rows, const std::filesystem::path& path,
+           const StateRows& truth);
+  /// Sentences on what was found, with component, file and line.
+  std::vector<std::string> notes() const;
+
+ private:
+  /// Signs that the variance of a component was not estimated, in the order of their notes.
+  enum Sign : std::uint8_t { negative, zero, huge, tiny, kSigns };
+  /// The rows in which a component has a sign.
+  struct Marked {
+    std::uint64_t rows = 0;
+    double value = 0.0;   ///< variance in the first of them
+    bool varies = false;  ///< whether the variance is another one in a later row
+    std::string first;    ///< file and line of the first of them
+  };
+  struct OfCell {
+    std::string label;
+    StateShape shape;
+    std::vector<std::array<Marked, kSigns>> marked;  ///< {component}
+    std::uint64_t rows = 0;
+    /// [rad] Sums of angles between the rotations of estimates and truth: as stated, and if the
+    /// quaternions of the estimates, or of the truth, have w first.
+    double as_stated = 0.0;
+    std::array<double, 2> w_first{};
+    std::uint64_t copies = 0;  ///< number of rows that equal the truth
+    std::string first_copy;    ///< file and line of the first of them
+  };
+
+  void mark(const StateRows& rows, std::size_t row, const std::string& place, OfCell& cell);
+  static void compare_quaternions(const StateRows& rows, std::size_t row, const StateRows& truth,
+                                  OfCell& cell);
+  void add_notes(const OfCell& cell, std::vector<std::string>& notes) const;
+
+  std::vector<OfCell> cells_;
+  std::uint64_t left_out_ = 0;  ///< number of rows of one time that were not kept
+  std::string first_left_out_;  ///< the first file with one
+  std::string on_angles_, on_times_, on_names_;
+};
+
+}  // namespace montecarta::experiments

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/judging/read_rows.hpp"
+
+#include "experiments/judging/angle_units.hpp"
+#include "experiments/judging/time_units.hpp"
+
+namespace montecarta::experiments {
+namespace {
+
+void remove_last(StateRows& rows) {
+  rows.time.pop_back();
+  rows.line.pop_back();
+  if (!rows.state.empty()) rows.state.pop_back();
+  if (!rows.covariance.empty()) rows.covariance.pop_back();
+  if (rows.nis.empty()) return;
+  rows.nis.pop_back();
+  rows.nis_dof.pop_back();
+}
+
+/// Adds time and line of the current row, instead of those of a row that is not kept. Returns
+/// whether the current row is kept.
+bool take_time(CsvRows& file, EqualTimes equal, StateRows& rows) {
+  const double time = file.time(CsvRows::Order::not_earlier);
+  if (!rows.time.empty() && time == rows.time.back()) {
+    if (equal == EqualTimes::refuse) {
+      file.refuse_equal_times("keep one of the rows by --keep last or --keep first");
+    }
+    ++rows.left_out;
+    if (equal == EqualTimes::keep_first) return false;
+    remove_last(rows);
+  }
+  rows.time.push_back(time);
+  rows.line.push_back(file.line());
+  return true;
+}
+
+}  // namespace
+
+StateRows read_estimates(const std::filesystem::path& path, EqualTimes equal) {
+  CsvRows file(path);
+  const EstimateFields fields = estimate_fields(file.columns(), file.place());
+  StateRows rows{fields.shape, {}, {}, {}, {}, {}};
+  while (file.next()) {
+    if (!take_time(file, equal, rows)) continue;
+    rows.state.push_back(state_in(file, fields.state, fields.shape));
+    rows.covariance.push_back(covariance_in(file, fields));
+    if (!fields.nis) continue;
+    const auto [nis, dof] = nis_in(file, fields);
+    rows.nis.push_back(nis);
+    rows.nis_dof.push_back(dof);
+  }
+  require_seconds(rows, path);
+  require_radians(rows, path);
+  return rows;
+}
+
+std::vector<double> times_in(const std::filesystem::path& path, EqualTimes equal) {
+  CsvRows file(path);
+  StateRows kept;
+  while (file.next()) take_time(file, equal, kept);
+  return kept.time;
+}
+
+StateRows read_truth(const std::filesystem::path& path, const StateShape& shape, EqualTimes equal) {
+  CsvRows file(path);
+  const std::vector<std::size_t> fields = truth_fields(file.columns(), shape, file.place());
+  StateRows rows{shape, {}, {}, {}, {}, {}};
+  while (file.next()) {
+    if (take_time(file, equal, rows)) rows.state.push_back(state_in(file, fields, shape));
+  }
+  file.require_some();
+  require_seconds(rows, path);
+  require_radians(rows, path);
+  return rows;
+}
+
+}  // namespace montecarta::experiments
