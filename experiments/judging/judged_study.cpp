@@ -180,8 +180,8 @@ std::vector<std::string> write_runs(const JudgedFiles& files, const JudgingOptio
       const StateRows rows =
           read_with_innovations(path, options.match.tolerance, options.equal_times);
       unwrapped.add(rows);
-      require_same_time_unit(rows, path, truth, files.truth[run]);
       mistakes.add(c, rows, path, truth);
+      require_same_time_unit(rows, path, truth, files.truth[run]);
       require_alike(rows, path, longest.rows, longest.path, options.match.tolerance);
       std::vector<Eigen::VectorXd> truths;
       for (const double time : longest.rows.time)

@@ -63,6 +63,10 @@ double angle_between(const Eigen::Vector4d& a, const Eigen::Vector4d& b) {
 /// The quaternion x, y, z, w of numbers that are w, x, y, z.
 Eigen::Vector4d from_w_first(const Eigen::Vector4d& q) { return {q(1), q(2), q(3), q(0)}; }
 
+std::string place_of_line(const std::filesystem::path& path, std::size_t line) {
+  return path.string() + ":" + std::to_string(line);
+}
+
 std::string of_rows(std::uint64_t some, std::uint64_t all) {
   return std::to_string(some) + " of " + std::to_string(all) + " rows";
 }
@@ -70,7 +74,7 @@ std::string of_rows(std::uint64_t some, std::uint64_t all) {
 /// The columns of a state without some of its components.
 std::string remaining(const StateShape& shape, const std::vector<std::string>& names) {
   const auto has = [&](const char* name) { return std::ranges::count(names, name) > 0; };
-  if (shape.kind != StateKind::vector) {
+  if (shape.kind == StateKind::pose_in_space) {
     const bool is_planar = has("z") && has("rx") && has("ry") && names.size() == 3;
     return is_planar ? "x_m,y_m,heading_rad" : "the others";
   }
@@ -97,12 +101,14 @@ void LikelyMistakes::compare_quaternions(const StateRows& rows, std::size_t row,
 }
 
 void LikelyMistakes::add_truth(const StateRows& truth, const std::filesystem::path& path) {
+  require_seconds(truth, path);
+  require_radians(truth, path);
   if (on_angles_.empty()) on_angles_ = note_on_angles(truth, path);
   if (truth.left_out > 0 && left_out_ == 0) first_left_out_ = path.string();
   left_out_ += truth.left_out;
 }
 
-void LikelyMistakes::mark(const StateRows& rows, std::size_t row, const std::string& place,
+void LikelyMistakes::mark(const StateRows& rows, std::size_t row, const std::filesystem::path& path,
                           OfCell& cell) {
   const Eigen::VectorXd variances = rows.covariance[row].diagonal();
   for (Eigen::Index i = 0; i < variances.size(); ++i) {
@@ -114,7 +120,7 @@ void LikelyMistakes::mark(const StateRows& rows, std::size_t row, const std::str
       Marked& marked = cell.marked[static_cast<std::size_t>(i)][sign];
       if (marked.rows++ == 0) {
         marked.value = value;
-        marked.first = place;
+        marked.first = place_of_line(path, rows.line[row]);
       }
       marked.varies = marked.varies || value != marked.value;
     }
@@ -123,6 +129,8 @@ void LikelyMistakes::mark(const StateRows& rows, std::size_t row, const std::str
 
 void LikelyMistakes::add(std::size_t cell, const StateRows& rows, const std::filesystem::path& path,
                          const StateRows& truth) {
+  require_seconds(rows, path);
+  require_radians(rows, path);
   if (on_angles_.empty()) on_angles_ = note_on_angles(rows, path);
   if (on_times_.empty()) on_times_ = note_on_times(rows, path);
   if (rows.left_out > 0 && left_out_ == 0) first_left_out_ = path.string();
@@ -132,12 +140,14 @@ void LikelyMistakes::add(std::size_t cell, const StateRows& rows, const std::fil
   of_cell.marked.resize(rows.shape.dimension());
   of_cell.rows += rows.time.size();
   for (std::size_t row = 0; row < rows.time.size(); ++row) {
-    const std::string place = path.string() + ":" + std::to_string(rows.line[row]);
-    mark(rows, row, place, of_cell);
+    const std::size_t line = rows.line[row];
+    mark(rows, row, path, of_cell);
     if (rows.shape.kind == StateKind::pose_in_space) {
       compare_quaternions(rows, row, truth, of_cell);
     }
-    if (is_copy(rows, row, truth) && of_cell.copies++ == 0) of_cell.first_copy = place;
+    if (!is_copy(rows, row, truth)) continue;
+    if (of_cell.copies++ == 0) of_cell.first_copy = place_of_line(path, line);
+    of_cell.later_copies += row > 0 ? 1 : 0;
   }
 }
 
@@ -178,7 +188,7 @@ void LikelyMistakes::add_notes(const OfCell& cell, std::vector<std::string>& not
                     " rad from the truth on average, and are " + mean(cell.as_stated) +
                     " rad): write x, y, z, w");
   }
-  if (10 * cell.copies > cell.rows) {
+  if (10 * cell.later_copies > cell.rows) {  // the first row may be known exactly
     notes.push_back(cell.label + ": the estimates equal the truth, number by number, in " +
                     of_rows(cell.copies, cell.rows) + ", the first in " + cell.first_copy +
                     ": are they a copy of it?");

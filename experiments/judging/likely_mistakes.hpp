@@ -20,8 +20,11 @@ class LikelyMistakes {
  public:
   explicit LikelyMistakes(const JudgedFiles& files);
 
+  /// Adds the truth of a run. Throws StudyError if times or angles are in another unit than their
+  /// columns say.
   void add_truth(const StateRows& truth, const std::filesystem::path& path);
-  /// Adds one file of the estimator `cell` of JudgedFiles::cells, with the truth of its run.
+  /// Adds one file of the estimator `cell` of JudgedFiles::cells, with the truth of its run. Throws
+  /// like add_truth().
   void add(std::size_t cell, const StateRows& rows, const std::filesystem::path& path,
            const StateRows& truth);
   /// Sentences on what was found, with component, file and line.
@@ -46,11 +49,13 @@ class LikelyMistakes {
     /// quaternions of the estimates, or of the truth, have w first.
     double as_stated = 0.0;
     std::array<double, 2> w_first{};
-    std::uint64_t copies = 0;  ///< number of rows that equal the truth
-    std::string first_copy;    ///< file and line of the first of them
+    std::uint64_t copies = 0;        ///< number of rows that equal the truth
+    std::uint64_t later_copies = 0;  ///< those that are not the first row of a file
+    std::string first_copy;          ///< file and line of the first of them
   };
 
-  void mark(const StateRows& rows, std::size_t row, const std::string& place, OfCell& cell);
+  static void mark(const StateRows& rows, std::size_t row, const std::filesystem::path& path,
+                   OfCell& cell);
   static void compare_quaternions(const StateRows& rows, std::size_t row, const StateRows& truth,
                                   OfCell& cell);
   void add_notes(const OfCell& cell, std::vector<std::string>& notes) const;

@@ -31,8 +31,7 @@ struct StateRows {
 };
 
 /// Reads estimates (mean and covariance over time) from CSV. Throws StudyError with file, line and
-/// remedy if the file is empty or damaged, or a number is not finite, or if times or angles are in
-/// another unit than their columns say.
+/// remedy if the file is empty or damaged, or a number is not finite.
 StateRows read_estimates(const std::filesystem::path& path, EqualTimes equal = EqualTimes::refuse);
 
 /// Number of rows in a file, of which those that are not kept are not counted.
