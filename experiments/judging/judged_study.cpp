@@ -8,7 +8,6 @@
 #include "experiments/files/files.hpp"
 #include "experiments/judging/innovation_rows.hpp"
 #include "experiments/judging/likely_mistakes.hpp"
-#include "experiments/judging/time_units.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>
@@ -181,7 +180,6 @@ std::vector<std::string> write_runs(const JudgedFiles& files, const JudgingOptio
           read_with_innovations(path, options.match.tolerance, options.equal_times);
       unwrapped.add(rows);
       mistakes.add(c, rows, path, truth);
-      require_same_time_unit(rows, path, truth, files.truth[run]);
       require_alike(rows, path, longest.rows, longest.path, options.match.tolerance);
       std::vector<Eigen::VectorXd> truths;
       for (const double time : longest.rows.time)

@@ -101,8 +101,8 @@ void LikelyMistakes::compare_quaternions(const StateRows& rows, std::size_t row,
 }
 
 void LikelyMistakes::add_truth(const StateRows& truth, const std::filesystem::path& path) {
-  require_seconds(truth, path);
   require_radians(truth, path);
+  truth_path_ = path;
   if (on_angles_.empty()) on_angles_ = note_on_angles(truth, path);
   if (truth.left_out > 0 && left_out_ == 0) first_left_out_ = path.string();
   left_out_ += truth.left_out;
@@ -130,6 +130,8 @@ void LikelyMistakes::mark(const StateRows& rows, std::size_t row, const std::fil
 void LikelyMistakes::add(std::size_t cell, const StateRows& rows, const std::filesystem::path& path,
                          const StateRows& truth) {
   require_seconds(rows, path);
+  require_same_time_unit(rows, path, truth, truth_path_);
+  require_seconds(truth, truth_path_);
   require_radians(rows, path);
   if (on_angles_.empty()) on_angles_ = note_on_angles(rows, path);
   if (on_times_.empty()) on_times_ = note_on_times(rows, path);

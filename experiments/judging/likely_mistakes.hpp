@@ -20,11 +20,12 @@ class LikelyMistakes {
  public:
   explicit LikelyMistakes(const JudgedFiles& files);
 
-  /// Adds the truth of a run. Throws StudyError if times or angles are in another unit than their
-  /// columns say.
+  /// Adds the truth of a run. Throws StudyError if angles are in another unit than their columns
+  /// say.
   void add_truth(const StateRows& truth, const std::filesystem::path& path);
-  /// Adds one file of the estimator `cell` of JudgedFiles::cells, with the truth of its run. Throws
-  /// like add_truth().
+  /// Adds one file of the estimator `cell` of JudgedFiles::cells, with the truth of its run, which
+  /// was added before. Throws StudyError if times or angles are in another unit than their columns
+  /// say.
   void add(std::size_t cell, const StateRows& rows, const std::filesystem::path& path,
            const StateRows& truth);
   /// Sentences on what was found, with component, file and line.
@@ -61,8 +62,9 @@ class LikelyMistakes {
   void add_notes(const OfCell& cell, std::vector<std::string>& notes) const;
 
   std::vector<OfCell> cells_;
-  std::uint64_t left_out_ = 0;  ///< number of rows of one time that were not kept
-  std::string first_left_out_;  ///< the first file with one
+  std::filesystem::path truth_path_;  ///< file of the last truth
+  std::uint64_t left_out_ = 0;        ///< number of rows of one time that were not kept
+  std::string first_left_out_;        ///< the first file with one
   std::string on_angles_, on_times_, on_names_;
 };
 
