@@ -170,7 +170,7 @@ std::vector<std::string> write_runs(const JudgedFiles& files, const JudgingOptio
                                     ResultWriter& writer) {
   const std::vector<RecordLayout> layouts = layouts_of(plan, Detail::usual);
   UnwrappedInnovations unwrapped;
-  LikelyMistakes mistakes(files);
+  LikelyMistakes mistakes(files, *options.convention);
   for (std::size_t run = 0; run < files.runs.size(); ++run) {
     const StateRows truth = read_truth(files.truth[run], longest.rows.shape, options.equal_times);
     mistakes.add_truth(truth, files.truth[run]);
