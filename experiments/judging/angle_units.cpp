@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <vector>
 
@@ -25,7 +26,7 @@ struct AngleColumn {
   std::string name;
   std::vector<double> value;  ///< {row}
   bool is_orientation = false;
-  bool is_heading_of_pose = false;
+  bool is_heading = false;
 };
 
 /// Index of the first row beyond two turns; nullopt if there is none.
@@ -39,12 +40,16 @@ std::optional<std::size_t> first_beyond(const AngleColumn& angle) {
 /// Mean cosine between the heading and the direction of motion, weighted by distance, if one unit
 /// of the heading is `unit` [rad].
 double agreement_with_motion(const StateRows& rows, const AngleColumn& heading, double unit) {
+  const std::vector<std::string>& columns = rows.shape.columns;
+  const auto x = std::ranges::find(columns, "x_m") - columns.begin();
+  const auto y = std::ranges::find(columns, "y_m") - columns.begin();
+  if (std::max(x, y) == std::ssize(columns)) return 0.0;
   double cosines = 0.0, distances = 0.0;
   for (std::size_t k = 1; k < rows.state.size(); ++k) {
-    const Eigen::Vector2d step = rows.state[k].head<2>() - rows.state[k - 1].head<2>();
+    const Eigen::VectorXd step = rows.state[k] - rows.state[k - 1];
     const double middle = 0.5 * unit * (heading.value[k] + heading.value[k - 1]);
-    cosines += step.x() * std::cos(middle) + step.y() * std::sin(middle);
-    distances += step.norm();
+    cosines += step(x) * std::cos(middle) + step(y) * std::sin(middle);
+    distances += Eigen::Vector2d(step(x), step(y)).norm();
   }
   return distances > 0.0 ? cosines / distances : 0.0;
 }
@@ -64,7 +69,7 @@ std::string sign_of_degrees(const StateRows& rows, const AngleColumn& angle) {
            " steps from row to row are beyond pi";
   }
   if (wraps > 0) return "it steps by nearly 360 where degrees begin again";
-  if (angle.is_heading_of_pose && agreement_with_motion(rows, angle, kDegree) > 0.9 &&
+  if (angle.is_heading && agreement_with_motion(rows, angle, kDegree) > 0.9 &&
       agreement_with_motion(rows, angle, 1.0) < 0.5) {
     return "in degrees it is the direction of motion, in rad it is not";
   }
@@ -80,7 +85,8 @@ std::vector<AngleColumn> angles_of(const StateRows& rows) {
     AngleColumn& angle = angles.emplace_back();
     angle.name = rows.shape.columns[k];
     angle.is_orientation = std::ranges::count(kOrientation, rows.shape.components[k]) > 0;
-    angle.is_heading_of_pose = rows.shape.kind == StateKind::pose;
+    angle.is_heading =
+        angle.is_orientation && angle.name != "pitch_rad" && angle.name != "roll_rad";
     for (const Eigen::VectorXd& state : rows.state) angle.value.push_back(state(i));
   }
   return angles;

@@ -10,7 +10,6 @@
 #include "experiments/judging/likely_mistakes.hpp"
 #include "experiments/judging/read_rows.hpp"
 #include "experiments/judging/scan_clock.hpp"
-#include "experiments/judging/time_units.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>
@@ -240,7 +239,7 @@ std::vector<std::string> write_runs(const JudgedFiles& files, const JudgingOptio
                                     ResultWriter& writer) {
   const std::vector<RecordLayout> layouts = layouts_of(plan, Detail::usual);
   UnwrappedInnovations unwrapped;
-  LikelyMistakes mistakes(files);
+  LikelyMistakes mistakes(files, *options.convention);
   TruthUse use;
   std::uint64_t missing = 0;
   for (std::size_t run = 0; run < files.runs.size(); ++run) {
@@ -252,7 +251,6 @@ std::vector<std::string> write_runs(const JudgedFiles& files, const JudgingOptio
       const fs::path& path = files.cells[c].of_run[run];
       StateRows rows = read_with_innovations(path, options.match.tolerance, options.equal_times);
       unwrapped.add(rows);
-      require_same_time_unit(rows, path, truth_rows, files.truth[run]);
       require_alike(rows, path, all.rows, all.path);
       mistakes.add(c, rows, path, truth_rows);
       std::vector<std::size_t> scans = all.clock.scans_of(rows.time);

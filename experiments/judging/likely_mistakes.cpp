@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/judging/likely_mistakes.hpp"
 
+#include "analysis/run/nees.hpp"
 #include "engine/text/number_text.hpp"
 #include "experiments/judging/angle_units.hpp"
 #include "experiments/judging/time_units.hpp"
@@ -55,13 +56,17 @@ std::size_t nearest_row(const StateRows& truth, double time) {
   return k < truth.time.size() && truth.time[k] - time < time - truth.time[k - 1] ? k : k - 1;
 }
 
-/// [rad] Angle between two rotations, given as unit quaternions.
-double angle_between(const Eigen::Vector4d& a, const Eigen::Vector4d& b) {
-  return 2.0 * std::acos(std::min(std::abs(a.dot(b)), 1.0));
+/// The pose in space of numbers whose quaternion is w, x, y, z.
+Eigen::VectorXd from_w_first(const Eigen::VectorXd& pose) {
+  const Eigen::VectorXd q = pose.tail<4>();
+  Eigen::VectorXd turned = pose;
+  turned.tail<4>() << q(1), q(2), q(3), q(0);
+  return turned;
 }
 
-/// The quaternion x, y, z, w of numbers that are w, x, y, z.
-Eigen::Vector4d from_w_first(const Eigen::Vector4d& q) { return {q(1), q(2), q(3), q(0)}; }
+std::string place_of_line(const std::filesystem::path& path, std::size_t line) {
+  return path.string() + ":" + std::to_string(line);
+}
 
 std::string of_rows(std::uint64_t some, std::uint64_t all) {
   return std::to_string(some) + " of " + std::to_string(all) + " rows";
@@ -70,7 +75,7 @@ std::string of_rows(std::uint64_t some, std::uint64_t all) {
 /// The columns of a state without some of its components.
 std::string remaining(const StateShape& shape, const std::vector<std::string>& names) {
   const auto has = [&](const char* name) { return std::ranges::count(names, name) > 0; };
-  if (shape.kind != StateKind::vector) {
+  if (shape.kind == StateKind::pose_in_space) {
     const bool is_planar = has("z") && has("rx") && has("ry") && names.size() == 3;
     return is_planar ? "x_m,y_m,heading_rad" : "the others";
   }
@@ -83,26 +88,44 @@ std::string remaining(const StateShape& shape, const std::vector<std::string>& n
 
 }  // namespace
 
-LikelyMistakes::LikelyMistakes(const JudgedFiles& files) : on_names_(note_on_names(files)) {
+LikelyMistakes::LikelyMistakes(const JudgedFiles& files, ErrorConvention convention)
+    : convention_(convention), on_names_(note_on_names(files)) {
   for (const EstimatorFiles& cell : files.cells) cells_.emplace_back().label = cell.cell;
 }
 
+LikelyMistakes::Misfit LikelyMistakes::misfit(const StateRows& rows, std::size_t row,
+                                              const Eigen::VectorXd& mean,
+                                              const Eigen::VectorXd& truth) const {
+  const double cosine = mean.tail<4>().dot(truth.tail<4>());
+  const Eigen::VectorXd error = error_of(rows.shape, convention_, mean, truth);
+  const analysis::Nees nees = analysis::imported_nees(error, rows.covariance[row]);
+  return {2.0 * std::acos(std::min(std::abs(cosine), 1.0)),
+          nees.rank > 0 ? nees.value / nees.rank : 0.0};
+}
+
 void LikelyMistakes::compare_quaternions(const StateRows& rows, std::size_t row,
-                                         const StateRows& truth, OfCell& cell) {
-  const Eigen::Vector4d true_one = truth.state[nearest_row(truth, rows.time[row])].tail<4>();
-  const Eigen::Vector4d own = rows.state[row].tail<4>();
-  cell.as_stated += angle_between(own, true_one);
-  cell.w_first[0] += angle_between(from_w_first(own), true_one);
-  cell.w_first[1] += angle_between(own, from_w_first(true_one));
+                                         const StateRows& truth, OfCell& cell) const {
+  const Eigen::VectorXd& mean = rows.state[row];
+  const Eigen::VectorXd& true_one = truth.state[nearest_row(truth, rows.time[row])];
+  const auto add = [&](Misfit& sum, const Eigen::VectorXd& estimate, const Eigen::VectorXd& of) {
+    const Misfit one = misfit(rows, row, estimate, of);
+    sum.angle += one.angle;
+    sum.nees += one.nees;
+  };
+  add(cell.as_stated, mean, true_one);
+  add(cell.w_first[0], from_w_first(mean), true_one);
+  add(cell.w_first[1], mean, from_w_first(true_one));
 }
 
 void LikelyMistakes::add_truth(const StateRows& truth, const std::filesystem::path& path) {
+  require_radians(truth, path);
+  truth_path_ = path;
   if (on_angles_.empty()) on_angles_ = note_on_angles(truth, path);
   if (truth.left_out > 0 && left_out_ == 0) first_left_out_ = path.string();
   left_out_ += truth.left_out;
 }
 
-void LikelyMistakes::mark(const StateRows& rows, std::size_t row, const std::string& place,
+void LikelyMistakes::mark(const StateRows& rows, std::size_t row, const std::filesystem::path& path,
                           OfCell& cell) {
   const Eigen::VectorXd variances = rows.covariance[row].diagonal();
   for (Eigen::Index i = 0; i < variances.size(); ++i) {
@@ -114,7 +137,7 @@ void LikelyMistakes::mark(const StateRows& rows, std::size_t row, const std::str
       Marked& marked = cell.marked[static_cast<std::size_t>(i)][sign];
       if (marked.rows++ == 0) {
         marked.value = value;
-        marked.first = place;
+        marked.first = place_of_line(path, rows.line[row]);
       }
       marked.varies = marked.varies || value != marked.value;
     }
@@ -123,6 +146,10 @@ void LikelyMistakes::mark(const StateRows& rows, std::size_t row, const std::str
 
 void LikelyMistakes::add(std::size_t cell, const StateRows& rows, const std::filesystem::path& path,
                          const StateRows& truth) {
+  require_seconds(rows, path);
+  require_same_time_unit(rows, path, truth, truth_path_);
+  require_seconds(truth, truth_path_);
+  require_radians(rows, path);
   if (on_angles_.empty()) on_angles_ = note_on_angles(rows, path);
   if (on_times_.empty()) on_times_ = note_on_times(rows, path);
   if (rows.left_out > 0 && left_out_ == 0) first_left_out_ = path.string();
@@ -132,12 +159,14 @@ void LikelyMistakes::add(std::size_t cell, const StateRows& rows, const std::fil
   of_cell.marked.resize(rows.shape.dimension());
   of_cell.rows += rows.time.size();
   for (std::size_t row = 0; row < rows.time.size(); ++row) {
-    const std::string place = path.string() + ":" + std::to_string(rows.line[row]);
-    mark(rows, row, place, of_cell);
+    const std::size_t line = rows.line[row];
+    mark(rows, row, path, of_cell);
     if (rows.shape.kind == StateKind::pose_in_space) {
       compare_quaternions(rows, row, truth, of_cell);
     }
-    if (is_copy(rows, row, truth) && of_cell.copies++ == 0) of_cell.first_copy = place;
+    if (!is_copy(rows, row, truth)) continue;
+    if (of_cell.copies++ == 0) of_cell.first_copy = place_of_line(path, line);
+    of_cell.later_copies += row > 0 ? 1 : 0;
   }
 }
 
@@ -170,15 +199,17 @@ void LikelyMistakes::add_notes(const OfCell& cell, std::vector<std::string>& not
   }
   for (std::size_t k = 0; k < cell.w_first.size(); ++k) {
     constexpr double kMuchNearer = 0.2;
-    if (!(cell.w_first[k] < kMuchNearer * cell.as_stated)) continue;
+    const Misfit &stated = cell.as_stated, &other = cell.w_first[k];
+    if (!(other.angle < kMuchNearer * stated.angle)) continue;
     const auto mean = [&](double sum) { return compact(sum / static_cast<double>(cell.rows)); };
     notes.push_back(cell.label + ": the quaternions of the " + (k == 0 ? "estimates" : "truth") +
-                    " may be written with w first, under the header qx,qy,qz,qw (rotations would " +
-                    "then be " + mean(cell.w_first[k]) +
-                    " rad from the truth on average, and are " + mean(cell.as_stated) +
+                    " may be written with w first, under the header qx,qy,qz,qw (then rotations "
+                    "would be " +
+                    mean(other.angle) + " rad from the truth on average, with a NEES ratio of " +
+                    mean(other.nees) + ", and are " + mean(stated.angle) +
                     " rad): write x, y, z, w");
   }
-  if (10 * cell.copies > cell.rows) {
+  if (10 * cell.later_copies > cell.rows) {  // the first row may be known exactly
     notes.push_back(cell.label + ": the estimates equal the truth, number by number, in " +
                     of_rows(cell.copies, cell.rows) + ", the first in " + cell.first_copy +
                     ": are they a copy of it?");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "experiments/judging/error_convention.hpp"
 #include "experiments/judging/run_files.hpp"
 #include "experiments/judging/state_rows.hpp"
 
@@ -18,10 +19,15 @@ namespace montecarta::experiments {
 /// one time, units.
 class LikelyMistakes {
  public:
-  explicit LikelyMistakes(const JudgedFiles& files);
+  /// The errors of the estimates are those of `convention`.
+  LikelyMistakes(const JudgedFiles& files, ErrorConvention convention);
 
+  /// Adds the truth of a run. Throws StudyError if angles are in another unit than their columns
+  /// say.
   void add_truth(const StateRows& truth, const std::filesystem::path& path);
-  /// Adds one file of the estimator `cell` of JudgedFiles::cells, with the truth of its run.
+  /// Adds one file of the estimator `cell` of JudgedFiles::cells, with the truth of its run, which
+  /// was added before. Throws StudyError if times or angles are in another unit than their columns
+  /// say.
   void add(std::size_t cell, const StateRows& rows, const std::filesystem::path& path,
            const StateRows& truth);
   /// Sentences on what was found, with component, file and line.
@@ -37,27 +43,38 @@ class LikelyMistakes {
     bool varies = false;  ///< whether the variance is another one in a later row
     std::string first;    ///< file and line of the first of them
   };
+  /// Sums of the differences between estimates and truth.
+  struct Misfit {
+    double angle = 0.0;  ///< [rad] between the rotations
+    double nees = 0.0;   ///< divided by the number of components; of usable samples
+  };
   struct OfCell {
     std::string label;
     StateShape shape;
     std::vector<std::array<Marked, kSigns>> marked;  ///< {component}
     std::uint64_t rows = 0;
-    /// [rad] Sums of angles between the rotations of estimates and truth: as stated, and if the
-    /// quaternions of the estimates, or of the truth, have w first.
-    double as_stated = 0.0;
-    std::array<double, 2> w_first{};
-    std::uint64_t copies = 0;  ///< number of rows that equal the truth
-    std::string first_copy;    ///< file and line of the first of them
+    /// Sums over rows: as stated, and if the quaternions of the estimates, or of the truth, have w
+    /// first.
+    Misfit as_stated;
+    std::array<Misfit, 2> w_first;
+    std::uint64_t copies = 0;        ///< number of rows that equal the truth
+    std::uint64_t later_copies = 0;  ///< those that are not the first row of a file
+    std::string first_copy;          ///< file and line of the first of them
   };
 
-  void mark(const StateRows& rows, std::size_t row, const std::string& place, OfCell& cell);
-  static void compare_quaternions(const StateRows& rows, std::size_t row, const StateRows& truth,
-                                  OfCell& cell);
+  static void mark(const StateRows& rows, std::size_t row, const std::filesystem::path& path,
+                   OfCell& cell);
+  Misfit misfit(const StateRows& rows, std::size_t row, const Eigen::VectorXd& mean,
+                const Eigen::VectorXd& truth) const;
+  void compare_quaternions(const StateRows& rows, std::size_t row, const StateRows& truth,
+                           OfCell& cell) const;
   void add_notes(const OfCell& cell, std::vector<std::string>& notes) const;
 
+  ErrorConvention convention_;
   std::vector<OfCell> cells_;
-  std::uint64_t left_out_ = 0;  ///< number of rows of one time that were not kept
-  std::string first_left_out_;  ///< the first file with one
+  std::filesystem::path truth_path_;  ///< file of the last truth
+  std::uint64_t left_out_ = 0;        ///< number of rows of one time that were not kept
+  std::string first_left_out_;        ///< the first file with one
   std::string on_angles_, on_times_, on_names_;
 };
 

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/judging/read_rows.hpp"
 
-#include "experiments/judging/angle_units.hpp"
-#include "experiments/judging/time_units.hpp"
-
 namespace montecarta::experiments {
 namespace {
 
@@ -49,8 +46,6 @@ StateRows read_estimates(const std::filesystem::path& path, EqualTimes equal) {
     rows.nis.push_back(nis);
     rows.nis_dof.push_back(dof);
   }
-  require_seconds(rows, path);
-  require_radians(rows, path);
   return rows;
 }
 
@@ -69,8 +64,6 @@ StateRows read_truth(const std::filesystem::path& path, const StateShape& shape,
     if (take_time(file, equal, rows)) rows.state.push_back(state_in(file, fields, shape));
   }
   file.require_some();
-  require_seconds(rows, path);
-  require_radians(rows, path);
   return rows;
 }
 

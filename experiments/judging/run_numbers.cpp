@@ -44,6 +44,13 @@ bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0;
 bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
 bool is_separator(char c) { return c == '_' || c == '-' || c == '.' || c == '='; }
 
+/// Whether the character at `i` divides numbers: a separator, or the T of 2024-01-02T10-20-30.
+bool divides(std::string_view part, std::size_t i) {
+  const bool is_time = part[i] == 'T' && i > 0 && i + 1 < part.size() && is_digit(part[i - 1]) &&
+                       is_digit(part[i + 1]);
+  return is_time || is_separator(part[i]);
+}
+
 /// Rank of a word in kWords; its size for other words.
 std::size_t rank_of(const std::string& word) {
   const auto list = std::ranges::find_if(kWords, [&](const std::vector<std::string>& words) {
@@ -72,10 +79,10 @@ std::optional<NumberSlot> slot_at(const std::string& part, std::size_t begin) {
   std::size_t end = begin;
   while (end < part.size() && is_digit(part[end])) ++end;
   const std::string_view before = std::string_view(part).substr(0, begin);
-  const bool is_apart = before.empty() || is_separator(before.back());
+  const bool is_apart = before.empty() || divides(part, begin - 1);
   NumberSlot slot{0, last_word(without_last_separators(before)), 0, begin, end};
   if (!is_apart && rank_of(slot.word) == kWords.size()) return std::nullopt;
-  if (end < part.size() && !is_separator(part[end])) return std::nullopt;
+  if (end < part.size() && !divides(part, end)) return std::nullopt;
   const auto value = to_count(part.substr(begin, end - begin));
   if (!value) return std::nullopt;
   slot.value = *value;
@@ -146,9 +153,11 @@ std::vector<std::size_t> bare_numbers(const ParsedPath& path,
   for (const std::size_t k : varying) {
     if (path.slots[k].part == part) found.push_back(k);
   }
-  const bool has_words = std::ranges::any_of(
-      path.parts[part], [](char c) { return !is_digit(c) && !is_separator(c); });
-  return has_words ? std::vector{last} : found;
+  const std::string& text = path.parts[part];
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (!is_digit(text[i]) && !divides(text, i)) return {last};
+  }
+  return found;
 }
 
 /// The slots that name the run, in the order of the path.

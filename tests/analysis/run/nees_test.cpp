@@ -97,6 +97,10 @@ TEST(Nees, LeavesOutComponentsThatAreKnownExactly) {
   add_errors_of_exact(Eigen::Vector3d(2.0, 1.0, -1e-3), no_heading, least_pose_deviation(), errors);
   add_errors_of_exact(Eigen::Vector3d(2.0, 1.0, 1e-10), no_heading, least_pose_deviation(), errors);
   EXPECT_THAT(errors, ElementsAre(0.0, 0.0, 1e-3));
+  errors = {};
+  add_errors_of_exact(Eigen::Vector3d(2.0, 1.0, 1e-7), no_heading, least_pose_deviation(), errors,
+                      kSingleRounding);
+  EXPECT_THAT(errors, ElementsAre(0.0, 0.0, 0.0));
   WhitenedPose pose;
   whiten_pose({2.0, 1.0, 1e-3}, no_heading, pose);
   EXPECT_EQ(pose.rank, 2);

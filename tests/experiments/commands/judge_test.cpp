@@ -212,6 +212,77 @@ TEST_F(Judge, WrongInputIsNamed) {
               AllOf(HasSubstr("run 7"), HasSubstr("right-invariant")));
 }
 
+// Variances that stand for "not measured", or for a component that cannot move.
+TEST_F(Judge, MarksAreNamedAndTablesHaveNoInfinity) {
+  for (const std::string mark : {"0", "1.7976931348623157e308"}) {
+    const std::string P = ",1,0,0,0,1,0,0,0," + mark + "\n";
+    write("e_0.csv", kHeader + "1,0.1,0,1e-7" + P + "2,0,0.1,0" + P);
+    write("e_1.csv", kHeader + "1,0.1,0,0" + P + "2,0.3,0.1,-1e-7" + P);
+    write("truth.csv", "time_s,x_m,y_m,heading_rad\n1,0,0,0\n2,0,0,0\n");
+    const Called called = judge({"e_0.csv", "e_1.csv"}, {"--truth", "truth.csv", "--error", "world",
+                                                         "-o", "mine.h5", "--force"});
+    EXPECT_THAT(called.err, HasSubstr("e: heading has the variance "));
+    EXPECT_THAT(called.out, Not(HasSubstr("deviation of 0"))) << "single precision explains it";
+    EXPECT_THAT(call({"analyze", "mine.h5", "--all"}).out, Not(HasSubstr(" inf")));
+  }
+}
+
+TEST_F(Judge, OneOfTwoEstimatesOfOneTimeIsKept) {
+  const std::string header = "time_s,a,cov_0_0\n";
+  for (const std::string run : {"0", "1", "2"}) {
+    write("e_" + run + ".csv", header + "1,9,1\n1," + run + ",1\n2,0." + run + ",1\n");
+  }
+  write("truth.csv", "time_s,a\n1,0.5\n2,0\n");
+  const std::vector<std::string> files = {"e_0.csv", "e_1.csv", "e_2.csv"};
+  EXPECT_THAT(judge(files, {"--truth", "truth.csv", "-o", "mine.h5"}).err, HasSubstr("--keep"));
+  const Called called = judge(files, {"--truth", "truth.csv", "-o", "mine.h5", "--keep", "last"});
+  ASSERT_EQ(called.code, 0) << called.err;
+  EXPECT_THAT(called.err, HasSubstr("3 rows are left out by --keep, the first in e_0.csv"));
+  EXPECT_NEAR(analyzed("mine.h5").cells[0].nees[0].series.average[0], (0.25 + 0.25 + 2.25) / 3,
+              1e-12);
+}
+
+TEST_F(Judge, SeedsAreRunsAndAYawIsAHeading) {
+  const std::string P = "cov_0_0,cov_0_1,cov_0_2,cov_1_1,cov_1_2,cov_2_2";
+  for (const std::string seed : {"7", "42", "1337"}) {
+    write("e_" + seed + ".csv",
+          "time_s,x_m,y_m,yaw_rad," + P + "\n1," + seed + ",0,0,1,0,0,1,0,1\n");
+  }
+  write("truth.csv", "time_s,x_m,y_m,heading_rad\n1,0,0,0\n");
+  const std::vector<std::string> files = {"e_7.csv", "e_42.csv", "e_1337.csv"};
+  EXPECT_THAT(judge(files, {"--truth", "truth.csv", "-o", "mine.h5"}).err,
+              HasSubstr("--error is missing"));
+  const Called called = judge(files, {"--truth", "truth.csv", "--error", "body", "-o", "mine.h5"});
+  ASSERT_EQ(called.code, 0) << called.err;
+  EXPECT_THAT(called.err, HasSubstr("7, 42, 1337"));
+  const ResultFile file(folder_ / "mine.h5");
+  EXPECT_THAT(file.runs(), ElementsAre(0, 1, 2));
+  EXPECT_THAT(file.study_text(), HasSubstr("names of runs = 7, 42, 1337"));
+}
+
+TEST_F(Judge, ARunIsOneRunWhateverItsNumber) {
+  write("e_3.csv", "time_s,a,cov_0_0\n1,0.1,1\n");
+  write("truth.csv", "time_s,a\n1,0\n");
+  const Called called = judge({"e_3.csv"}, {"--truth", "truth.csv", "-o", "mine.h5"});
+  EXPECT_THAT(called.out, HasSubstr(": 1 run, "));
+  EXPECT_THAT(call({"info", "mine.h5"}).out, HasSubstr("1 of 1"));
+}
+
+TEST_F(Judge, AVectorThatMayBeAPoseNeedsAnError) {
+  const std::string P = "cov_0_0,cov_0_1,cov_0_2,cov_1_1,cov_1_2,cov_2_2";
+  write("e_0.csv", "time_s,x_m,y_m,alpha_rad," + P + "\n1,0,0,0,1,0,0,1,0,1\n");
+  write("truth.csv", "time_s,x_m,y_m,alpha_rad\n1,0.5,0,0\n");
+  const std::vector<std::string> more = {"--truth", "truth.csv", "-o", "mine.h5"};
+  EXPECT_THAT(judge({"e_0.csv"}, more).err,
+              AllOf(HasSubstr("--error is missing"), HasSubstr("rename alpha_rad to heading_rad")));
+  auto words = more;
+  words.insert(words.end(), {"--error", "body"});
+  EXPECT_THAT(judge({"e_0.csv"}, words).err, HasSubstr("rename alpha_rad to heading_rad"));
+  words.back() = "world";
+  EXPECT_EQ(judge({"e_0.csv"}, words).code, 0);
+}
+
+// Averages over runs are taken at each time, of one state.
 /// Runs of a state x whose errors the tests choose, judged with truths of their own.
 class JudgeTimes : public Judge {
  protected:

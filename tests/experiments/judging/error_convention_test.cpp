@@ -246,6 +246,59 @@ TEST(ConventionHintsSlow, NameTheRightConvention) {
   }
 }
 
+/// {scan} Errors with the covariance P, which is written after a mistake in its layout.
+analysis::ErrorRows misread_errors(const Eigen::MatrixXd& P, const Eigen::MatrixXd& as_written,
+                                   std::uint64_t run) {
+  RngStream draw({13, run, 0, 0, Draw::test});
+  analysis::ErrorRows errors;
+  for (std::size_t s = 0; s < kScans; ++s) {
+    const Eigen::VectorXd error = drawn_error(P, draw);
+    errors.value.insert(errors.value.end(), error.begin(), error.end());
+    errors.covariance.insert(errors.covariance.end(), as_written.data(),
+                             as_written.data() + as_written.size());
+  }
+  return errors;
+}
+
+/// The hint on such errors of a vector, which has one convention.
+std::string hint_on_layout(const std::vector<std::string>& units, const Eigen::MatrixXd& P,
+                           const Eigen::MatrixXd& as_written) {
+  ConventionHints hints(units.size(), kScans);
+  for (std::uint64_t run = 0; run < kRuns; ++run) {
+    const analysis::ErrorRows errors = misread_errors(P, as_written, run);
+    analysis::NeesBy<engine::kErrorConventions.size()> by_convention;
+    for (std::size_t s = 0; s < kScans; ++s) {
+      by_convention[0].push_back(
+          analysis::imported_nees(errors.error(s), errors.covariance_of(s)).value);
+    }
+    hints.add(by_convention, analysis::nees_by_mistake(errors, units));
+  }
+  const std::vector<double> times = analysis::scan_times(kScans, 0.2);
+  return in_words(hints.result(times, 0.95, 1.1), "mine", "world");
+}
+
+TEST(ConventionHints, NameMistakesInTheLayout) {
+  for (const StateShape& shape : {plane_shape(), space_shape()}) {
+    const Eigen::MatrixXd P = some_covariance(shape);
+    const auto d = P.rows(), angles = d / 2;
+    Eigen::VectorXd degrees = Eigen::VectorXd::Ones(d);
+    degrees.tail(angles).setConstant(180.0 / kPi);
+    const Eigen::MatrixXd in_degrees = degrees.asDiagonal() * P * degrees.asDiagonal();
+    EXPECT_THAT(hint_on_layout(shape.units, P, in_degrees),
+                HasSubstr("with angles in degrees (NEES"));
+    Eigen::MatrixXd rotation_first(d, d);
+    for (Eigen::Index i = 0; i < d; ++i) {
+      for (Eigen::Index j = 0; j < d; ++j) {
+        rotation_first((i + angles) % d, (j + angles) % d) = P(i, j);
+      }
+    }
+    EXPECT_THAT(hint_on_layout(shape.units, P, rotation_first),
+                HasSubstr("with rotation before position (NEES"));
+    EXPECT_EQ(hint_on_layout(shape.units, P, P), "");
+    EXPECT_EQ(hint_on_layout(shape.units, P, 1e4 * P), "") << "merely conservative";
+  }
+}
+
 TEST(ConventionHints, SayWhatCannotBeToldApart) {
   const ConventionHint hint = hint_of(plane_shape(), ErrorConvention::body, 1);
   EXPECT_THAT(in_words(hint, "mine", "world"),

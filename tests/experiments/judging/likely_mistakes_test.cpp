@@ -2,6 +2,7 @@
 #include "experiments/judging/likely_mistakes.hpp"
 
 #include "experiments/text/words.hpp"
+#include "tests/doubles/complaint.hpp"
 #include "tests/doubles/matchers.hpp"
 
 #include <cfloat>
@@ -39,7 +40,7 @@ std::string notes_on(const StateRows& rows,
                      const StateRows& truth = rows_with(Eigen::VectorXd::Zero(6), 1.0)) {
   JudgedFiles files;
   files.cells.push_back({"ekf", {}});
-  LikelyMistakes mistakes(files);
+  LikelyMistakes mistakes(files, ErrorConvention::world);
   mistakes.add_truth(truth, "truth.csv");
   mistakes.add(0, rows, "ekf/run_0.csv", truth);
   return joined(mistakes.notes(), "\n");
@@ -71,6 +72,15 @@ TEST(LikelyMistakes, AreQuaternionsWithWFirst) {
   EXPECT_THAT(notes_on(swapped), HasSubstr("quaternions of the estimates may be written with w"));
   EXPECT_THAT(notes_on(rows_with(variances), swapped), HasSubstr("quaternions of the truth may"));
   EXPECT_EQ(notes_on(rows_with(variances, 0.0, {0.0, 0.0, 0.8, 0.6})), "") << "merely far off";
+}
+
+TEST(LikelyMistakes, InUnitsAreRefusedWithTheFactor) {
+  const StateRows rows = rows_with(planar(0.01));
+  StateRows truth = rows_with(Eigen::VectorXd::Zero(6), 1.0);
+  for (double& time : truth.time) time *= 1e9;
+  EXPECT_THAT(complaint_of([&] { notes_on(rows, truth); }),
+              AllOf(HasSubstr("truth.csv: times look like ns"), HasSubstr("run_0.csv")));
+  EXPECT_THAT(complaint_of([&] { notes_on(truth, truth); }), HasSubstr("divide time_s by 1e9"));
 }
 
 TEST(LikelyMistakes, AreRowsThatAreLeftOut) {

@@ -34,6 +34,18 @@ TEST(RunNumbers, AreThoseThatVary) {
   const JudgedFiles bare = paired({"77_0_0.csv", "77_0_1.csv", "77_1_0.csv", "77_1_1.csv"});
   EXPECT_EQ(bare.cells.size(), 1U);
   EXPECT_THAT(bare.names, ElementsAre("0/0", "0/1", "1/0", "1/1"));
+  const JudgedFiles dates = paired({"2024-01-02T10-20-30/e.csv", "2024-01-03T09-20-30/e.csv"});
+  EXPECT_THAT(labels_in(dates), ElementsAre("e"));
+  EXPECT_EQ(dates.runs.size(), 2U);
+  for (const Paths& names :
+       {Paths{"job_1_task_0_proc_0.csv", "job_1_task_0_proc_1.csv"},
+        Paths{"job_7_task_0_proc_0.csv", "job_8_task_0_proc_0.csv"},
+        Paths{"slurm-71_0.csv", "slurm-71_1.csv"}, Paths{"mc001/ekf.csv", "mc002/ekf.csv"},
+        Paths{"2024/ekf_seed1.csv", "2024/ekf_seed2.csv"},
+        Paths{"ekf/rank_0/0_0.csv", "ekf/rank_1/0_0.csv"}}) {
+    EXPECT_EQ(paired(names).cells.size(), 1U) << names[0];
+    EXPECT_EQ(paired(names).runs.size(), 2U) << names[0];
+  }
   const JudgedFiles twice = paired({"run_0/est_0.csv", "run_1/est_1.csv"});
   EXPECT_THAT(labels_in(twice), ElementsAre("est"));
 }

@@ -51,6 +51,10 @@ TEST(AngleUnits, OfHeadingsInDegreesAreRefused) {
                   AllOf(HasSubstr("a.csv:"), HasSubstr("heading_rad"), HasSubstr("in degrees")));
     }
   }
+  StateRows with_speed = driven(turns_slowly, in_degrees);
+  with_speed.shape = {
+      StateKind::vector, {"x_m", "y_m", "yaw_rad"}, {"x", "y", "yaw"}, {"m", "m", "rad"}};
+  EXPECT_THAT(on_angles(with_speed), HasSubstr("yaw_rad"));
   const StateRows vector = [&] {
     StateRows rows = driven(turns, in_degrees);
     rows.shape.kind = StateKind::vector;
