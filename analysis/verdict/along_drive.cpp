@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/verdict/along_drive.hpp"
 
+#include "analysis/statistics/correlated_average.hpp"
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <utility>
@@ -9,55 +12,69 @@
 namespace montecarta::analysis {
 namespace {
 
-/// {component}{scan} The rows of `errors` {scan, component} without NaN.
-VectorSeries complete_rows(std::span<const double> errors, std::size_t dimension) {
-  VectorSeries series(dimension);
+/// A smaller ratio is that of errors of 0, or of a deviation that stands for "unknown".
+constexpr double kLeastRatio = 1e-60;
+
+/// {component}{scan} These components of `errors` {scan, `dimension`}, at scans that have all.
+VectorSeries series_of(std::span<const double> errors, std::size_t dimension,
+                       std::span<const std::size_t> components) {
+  VectorSeries series(components.size());
   for (std::size_t first = 0; first < errors.size(); first += dimension) {
     const auto row = errors.subspan(first, dimension);
-    if (std::ranges::any_of(row, [](double e) { return std::isnan(e); })) continue;
-    for (std::size_t k = 0; k < dimension; ++k) series[k].push_back(row[k]);
+    const auto is_unknown = [&](std::size_t k) { return std::isnan(row[k]); };
+    if (std::ranges::any_of(components, is_unknown)) continue;
+    for (std::size_t k = 0; k < components.size(); ++k) series[k].push_back(row[components[k]]);
   }
   return series;
 }
 
-/// {scan} Component `k` of `errors` {scan, component} without NaN.
-std::vector<double> known(std::span<const double> errors, std::size_t k, std::size_t dimension) {
-  std::vector<double> series;
-  for (std::size_t i = k; i < errors.size(); i += dimension) {
-    if (!std::isnan(errors[i])) series.push_back(errors[i]);
+/// {run}{component}{scan} Likewise, of the runs that have such scans.
+std::vector<VectorSeries> drives_of(const ErrorsOfRuns& runs, std::size_t dimension,
+                                    std::span<const std::size_t> components) {
+  std::vector<VectorSeries> drives;
+  for (const std::vector<double>& run : runs) {
+    VectorSeries series = series_of(run, dimension, components);
+    if (!series.empty() && !series.front().empty()) drives.push_back(std::move(series));
   }
-  return series;
+  return drives;
 }
 
-MemberTest test_of(Family family, std::string name, std::vector<VectorSeries> drives) {
-  const CorrelatedAverage found = correlated_average(drives, kUsualLevel);
-  return {family,
-          {.name = std::move(name), .estimate = found.mean, .p = p_value_of_one(drives)},
-          [drives = std::move(drives)](double level) {
-            return correlated_average(drives, level).ratio;
-          }};
+/// Components that have an error in every run; the others are known exactly, or never estimated.
+std::vector<std::size_t> known_components(const ErrorsOfRuns& runs, std::size_t dimension) {
+  std::vector<std::size_t> known;
+  for (std::size_t k = 0; k < dimension; ++k) {
+    const std::array one = {k};
+    if (!runs.empty() && drives_of(runs, dimension, one).size() == runs.size()) known.push_back(k);
+  }
+  return known;
+}
+
+void add_test(Family family, std::string name, std::vector<VectorSeries> drives,
+              std::vector<MemberTest>& all) {
+  if (drives.empty()) return;
+  const double ratio = correlated_average(drives, kUsualLevel).mean;
+  if (ratio < kLeastRatio) return;
+  Member member{.name = std::move(name), .estimate = ratio, .p = p_value_of_one(drives)};
+  all.push_back({family, std::move(member), [drives = std::move(drives)](double level) {
+                   return correlated_average(drives, level).ratio;
+                 }});
 }
 
 }  // namespace
 
 void AlongDrive::add(const WhitenedRun& run) {
+  dimension_ = run.dimension;
   ++runs_;
+  whitened_.push_back(run.whitened);
+  standardised_.push_back(run.standardised);
   forget_if_enough();
-  if (runs_ >= kFewestJudgedRuns) return;
-  standardised_.resize(run.dimension);
-  for (std::size_t k = 0; k < run.dimension; ++k) {
-    standardised_[k].push_back(known(run.standardised, k, run.dimension));
-  }
-  whitened_.push_back(complete_rows(run.whitened, run.dimension));
 }
 
 void AlongDrive::merge(AlongDrive& next) {
+  dimension_ = std::max(dimension_, next.dimension_);
   runs_ += next.runs_;
   std::ranges::move(next.whitened_, std::back_inserter(whitened_));
-  standardised_.resize(std::max(standardised_.size(), next.standardised_.size()));
-  for (std::size_t k = 0; k < next.standardised_.size(); ++k) {
-    std::ranges::move(next.standardised_[k], std::back_inserter(standardised_[k]));
-  }
+  std::ranges::move(next.standardised_, std::back_inserter(standardised_));
   forget_if_enough();
 }
 
@@ -68,26 +85,23 @@ void AlongDrive::forget_if_enough() {
 }
 
 std::vector<MemberTest> AlongDrive::tests(std::span<const std::string> components) const {
-  const auto has_errors = [](const VectorSeries& drive) { return !drive.front().empty(); };
   std::vector<MemberTest> all;
-  std::vector<VectorSeries> drives;
-  std::ranges::copy_if(whitened_, std::back_inserter(drives), has_errors);
-  if (!drives.empty()) all.push_back(test_of(Family::size, "", std::move(drives)));
-  for (std::size_t k = 0; standardised_.size() > 1 && k < standardised_.size(); ++k) {
-    std::vector<VectorSeries> of_component;
-    for (const std::vector<double>& run : standardised_[k]) {
-      if (!run.empty()) of_component.push_back({run});
-    }
-    if (of_component.empty()) continue;
-    all.push_back(test_of(Family::component, components[k], std::move(of_component)));
+  add_test(Family::size, "",
+           drives_of(whitened_, dimension_, known_components(whitened_, dimension_)), all);
+  for (std::size_t k = 0; dimension_ > 1 && k < dimension_; ++k) {
+    const std::array one = {k};
+    add_test(Family::component, components[k], drives_of(standardised_, dimension_, one), all);
   }
   return all;
 }
 
 double AlongDrive::length_that_decides(double level, double within) const {
-  if (whitened_.empty() || whitened_.front().front().empty()) return kNaN;
-  const CorrelatedAverage found = correlated_average(whitened_.front(), level);
-  return samples_that_decide(whitened_.front().size(), level, within) / found.effective_samples;
+  const std::vector<std::size_t> known = known_components(whitened_, dimension_);
+  const std::vector<VectorSeries> drives = drives_of(whitened_, dimension_, known);
+  if (drives.empty()) return kNaN;
+  const CorrelatedAverage found = correlated_average(std::span(drives).first(1), level);
+  if (found.mean < kLeastRatio) return kNaN;
+  return samples_that_decide(known.size(), level, within) / found.effective_samples;
 }
 
 }  // namespace montecarta::analysis

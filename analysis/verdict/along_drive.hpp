@@ -2,8 +2,8 @@
 #pragma once
 
 #include "analysis/run/whitened_run.hpp"
-#include "analysis/statistics/correlated_average.hpp"
 #include "analysis/verdict/verdict.hpp"
+#include "analysis/verdict/worst_direction.hpp"
 
 #include <cstddef>
 #include <span>
@@ -30,10 +30,9 @@ class AlongDrive {
   void forget_if_enough();
 
   std::size_t runs_ = 0;
-  /// {run}{component}{scan} Errors in units of their covariance, without scans that have none.
-  std::vector<VectorSeries> whitened_;
-  /// {component}{run}{scan} Errors in units of the component's own deviation, likewise.
-  std::vector<VectorSeries> standardised_;
+  std::size_t dimension_ = 0;
+  /// {run}{scan, component} errors in units of their covariance, and of each component's deviation.
+  ErrorsOfRuns whitened_, standardised_;
 };
 
 }  // namespace montecarta::analysis
