@@ -194,12 +194,13 @@ double CsvRows::number(std::size_t i, const char* noun) const {
 
 void CsvRows::refuse_equal_times(const std::string& other_remedy) const {
   constexpr std::size_t kFewDigits = 10;   // of the time in s since 1970, these are whole seconds
-  constexpr std::size_t kLeastDigits = 4;  // fewer are no loss, but a round number
+  constexpr std::size_t kLeastDigits = 5;  // fewer are no loss, but a round number
   const std::string_view text = field(0);
   const std::string_view mantissa = text.substr(0, text.find_first_of("eE"));
   const std::size_t point = std::min(mantissa.find('.'), mantissa.size());
-  const auto digits = static_cast<std::size_t>(
-      std::ranges::count_if(mantissa, [](unsigned char c) { return std::isdigit(c) != 0; }));
+  const std::size_t first = std::min(mantissa.find_first_of("123456789"), mantissa.size());
+  const auto digits = static_cast<std::size_t>(std::ranges::count_if(
+      mantissa.substr(first), [](unsigned char c) { return std::isdigit(c) != 0; }));
   const bool is_whole =
       mantissa.size() == text.size() && mantissa.find_first_not_of("0.", point) == mantissa.npos;
   std::string why = "the row before has the same time";
@@ -208,7 +209,7 @@ void CsvRows::refuse_equal_times(const std::string& other_remedy) const {
   } else if (digits >= kLeastDigits && digits <= kFewDigits) {
     why += ", and " + std::to_string(digits) + " digits are printed";
   }
-  refuse("equal times " + std::string(text) + " s (" + why + "): print times with 15 digits, or " +
+  refuse("equal times " + excerpt(text) + " s (" + why + "): print times with 15 digits, or " +
          other_remedy);
 }
 

@@ -73,7 +73,25 @@ std::size_t place_of_column(const Names& header, const std::string& column, Stat
   return place_of_name(header, is_heading ? heading_in(header) : column);
 }
 
+/// Throws StudyError if the first column is a time under another name.
+void refuse_other_time(const std::string& column, const std::string& place) {
+  const std::string unit = column.substr(std::min(column.rfind('_') + 1, column.size()));
+  const std::map<std::string, std::string> factors = {{"ns", "1e9"}, {"us", "1e6"}, {"ms", "1e3"}};
+  const auto factor = factors.find(unit);
+  if (factor != factors.end() && (column.starts_with("time") || column.starts_with("t_"))) {
+    throw StudyError(place + ": '" + excerpt(column) + "' is in " + unit +
+                     " (times are in s): divide it by " + factor->second + ", and name it time_s");
+  }
+  const Names others = {"t",        "t_s",       "time",        "times",
+                        "time_sec", "timestamp", "timestamp_s", "stamp"};
+  if (has_name(others, column)) {
+    throw StudyError(place + ": '" + column +
+                     "' is not the name of times (they are in s): name the column time_s");
+  }
+}
+
 void check_header(const Names& header, const std::string& place) {
+  refuse_other_time(header.front(), place);
   if (header.front() != kTimeColumn) {
     throw StudyError(place + ": '" + excerpt(header.front()) +
                      "' is not the first column (times come first): begin the header with time_s, "

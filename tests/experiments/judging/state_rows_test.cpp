@@ -142,6 +142,9 @@ TEST_F(StateFiles, InOtherUnitsAreRefused) {
   EXPECT_THAT(complaint("time_s,x_m,y_m,yaw_radians\n"), HasSubstr("rename it to yaw_rad"));
   EXPECT_THAT(complaint("time_s,x_meters,y_m\n"), HasSubstr("rename it to x_m"));
   EXPECT_THAT(complaint("time_s,x_cm,y_cm,heading_rad\n"), HasSubstr("is in cm"));
+  EXPECT_THAT(complaint("time_ns,x_m\n"),
+              AllOf(HasSubstr("divide it by 1e9"), HasSubstr("time_s")));
+  EXPECT_THAT(complaint("t,x_m\n"), HasSubstr("name the column time_s"));
 }
 
 TEST_F(StateFiles, WithOtherSeparatorsAreNamed) {
