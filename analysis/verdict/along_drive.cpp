@@ -49,10 +49,23 @@ std::vector<std::size_t> known_components(const ErrorsOfRuns& runs, std::size_t 
   return known;
 }
 
+/// The mean over drives of the mean square of all components.
+double ratio_of(const std::vector<VectorSeries>& drives) {
+  double ratio = 0.0;
+  for (const VectorSeries& drive : drives) {
+    double sum = 0.0;
+    for (const std::vector<double>& component : drive) {
+      for (const double error : component) sum += error * error;
+    }
+    ratio += sum / static_cast<double>(drive.size() * drive.front().size() * drives.size());
+  }
+  return ratio;
+}
+
 void add_test(Family family, std::string name, std::vector<VectorSeries> drives,
               std::vector<MemberTest>& all) {
   if (drives.empty()) return;
-  const double ratio = correlated_average(drives, kUsualLevel).mean;
+  const double ratio = ratio_of(drives);
   if (ratio < kLeastRatio) return;
   Member member{.name = std::move(name), .estimate = ratio, .p = p_value_of_one(drives)};
   all.push_back({family, std::move(member), [drives = std::move(drives)](double level) {
@@ -98,9 +111,8 @@ std::vector<MemberTest> AlongDrive::tests(std::span<const std::string> component
 double AlongDrive::length_that_decides(double level, double within) const {
   const std::vector<std::size_t> known = known_components(whitened_, dimension_);
   const std::vector<VectorSeries> drives = drives_of(whitened_, dimension_, known);
-  if (drives.empty()) return kNaN;
+  if (drives.empty() || ratio_of({drives.front()}) < kLeastRatio) return kNaN;
   const CorrelatedAverage found = correlated_average(std::span(drives).first(1), level);
-  if (found.mean < kLeastRatio) return kNaN;
   return samples_that_decide(known.size(), level, within) / found.effective_samples;
 }
 

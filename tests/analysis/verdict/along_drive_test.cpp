@@ -70,6 +70,18 @@ TEST(AlongDrive, TestsSizeAndComponentsOfFewRuns) {
   EXPECT_GT(sums.length_that_decides(0.95, 1.1), 1.0);
 }
 
+TEST(AlongDrive, LeavesOutWhatIsKnownExactlyOrUnknown) {
+  const std::vector<std::string> names = {"a", "b"};
+  for (const double mark : {kNaN, 1e-162, 0.0}) {
+    AlongDrive sums;
+    sums.add(run_of({1, mark, -1, mark, 2, -mark, 1, mark}));
+    const std::vector<MemberTest> tests = sums.tests(names);
+    ASSERT_EQ(tests.size(), 2U) << mark;
+    EXPECT_EQ(tests[1].member.name, "a");
+    EXPECT_EQ(tests[1].member.estimate, 1.75);
+  }
+}
+
 TEST(AlongDrive, MergesToTheSameAndForgetsManyRuns) {
   const std::vector<std::string> names = {"a", "b"};
   AlongDrive both, first, second;
