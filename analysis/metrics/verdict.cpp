@@ -43,11 +43,7 @@ class VerdictOverRuns final : public MergedSums<VerdictOverRuns> {
                                    .share_of_runs = criteria_->share_of_runs};
     cell.verdict =
         judge(*sums_, {criteria_->components, criteria_->times}, analysis, ended, cell.complete);
-    const double lengths = sums_->drive_that_decides(level, criteria_->within);
-    if (!std::isnan(lengths)) {
-      cell.verdict.drive_that_decides =
-          lengths * (criteria_->times.back() - criteria_->times.front());
-    }
+    cell.verdict.drive_that_decides = sums_->drive_that_decides(level, criteria_->within);
     const NeesSeries& series = cell.nees.front().series;
     cell.verdict.samples = series.samples;
     cell.verdict.unusable = series.unusable;

@@ -1,9 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Reads montecarta result files (analysis/FORMAT.md): named arrays with units by xarray, tables by
-pandas, or plain NumPy arrays. One file, to be copied; nothing else of montecarta is needed, but for
-tables(), which the program computes.
+"""montecarta from Python: judge the errors of an estimator, run studies, and read result files
+(analysis/FORMAT.md). One file, to be copied. Reading needs nothing else of montecarta; what the
+program computes needs the program (see `program`).
 
     import montecarta
+
+    result = montecarta.judge(errors, covariances)  # {run, scan, d} and {run, scan, d, d}
+    print(result.sentence)                          # "... is optimistic (overconfident): ..."
+    result.raise_if_inconsistent()                  # in a test of the estimator
 
     results = montecarta.open("first_study.h5")
     results.labels                                  # ("ekf_slam", "fastslam1_m100", ...)
@@ -12,13 +16,250 @@ tables(), which the program computes.
     montecarta.at_scans(cell)                       # complete runs, at the scans
     results.tables()["cells"]                       # pandas.DataFrame, with the verdicts
 """
+from __future__ import annotations
+
+import html
+import json
 import os
+import shutil
 import subprocess
 import tempfile
+from typing import NamedTuple, Optional, Sequence
 
 import numpy as np
 
 POSE = ["x", "y", "heading"]
+
+
+def program() -> str:
+    """The path of the program: the environment variable MONTECARTA, else that of the source tree or
+    the package to which this file belongs, else the one in PATH. Raises FileNotFoundError if there
+    is none."""
+    here = os.path.dirname(os.path.abspath(__file__))
+    near = [os.path.join(here, *parts, "montecarta") for parts in
+            [("..", "..", "build"), ("..", "..", "..", "bin"), ("bin",)]]
+    for path in [os.environ.get("MONTECARTA"), *near, shutil.which("montecarta")]:
+        if path and os.path.isfile(path) and os.access(path, os.X_OK):
+            return os.path.normpath(path)
+    raise FileNotFoundError("no program montecarta is in build, beside this module or in PATH: "
+                            "build it (bash experiments/first_study), install the Debian package, "
+                            "or set MONTECARTA to its path")
+
+
+def _call(*words: str) -> subprocess.CompletedProcess:
+    """Calls the program. Raises ValueError with its message if it refuses its input."""
+    done = subprocess.run([program(), *words], capture_output=True, text=True, check=False)
+    if done.returncode in (1, 2):
+        raise ValueError(done.stderr.strip().removeprefix("montecarta: "))
+    return done
+
+
+class Ratio(NamedTuple):
+    """A ratio of squared errors to the expected ones with its 95 % interval; 1 is right."""
+
+    estimate: float
+    lower: float
+    upper: float
+
+
+class Inconsistent(AssertionError):
+    """An estimator is shown not to be consistent."""
+
+
+class Judgement:
+    """The verdict on an estimator (analysis/STATISTICS.md, chapter 5).
+
+    Attributes
+    ----------
+    answer : str
+        "consistent" within the margin, "optimistic", "conservative", "inconsistent", "undecided" or
+        "untested".
+    sentence : str
+        The answer in words, with what was shown.
+    ratio : Ratio
+        Mean of the squared errors in units of their covariance [1], with its interval.
+    notes : list of str
+        What is likely a mistake in the input.
+    path : str
+        The result file, which `open` reads and `montecarta report` draws.
+    """
+
+    def __init__(self, path: str, notes: Sequence[str] = (), within: Optional[float] = None):
+        margin = [] if within is None else ["--within", str(within)]
+        self._json = json.loads(_call("gate", path, "--json", *margin).stdout)
+        self.path, self.notes, self._margin = path, list(notes), margin
+        self.answer: str = self._json["verdict"]
+        self.sentence: str = self._json["reason"]
+        size = next((test["members"][0] for test in self._json["families"]
+                     if test["family"] == "size"), None)
+        self.ratio = Ratio(size["estimate"], *size["interval"]) if size else Ratio(*[np.nan] * 3)
+
+    @property
+    def families(self):
+        """The tests of the verdict as a pandas.DataFrame, one row for each member of a family. Of
+        the scans only the one with the least p-value is there."""
+        import pandas
+
+        return pandas.DataFrame([
+            {"family": test["family"], "member": member["name"], "estimate": member["estimate"],
+             "lower": member["interval"][0], "upper": member["interval"][1], "p": member["p"],
+             "family_p": test["p"], "shown": member["shown"]}
+            for test in self._json["families"] for member in test["members"]])
+
+    def tables(self):
+        """All tables of `montecarta analyze`, as {name: pandas.DataFrame}."""
+        return Results(self.path).tables(program(), *self._margin)
+
+    def report(self, folder: str) -> str:
+        """Writes a page with figures into `folder` and returns its path. It needs gnuplot."""
+        _call("report", self.path, "-o", os.fspath(folder), "--force", *self._margin)
+        return os.path.join(folder, "index.html")
+
+    def raise_if_inconsistent(self) -> None:
+        """Raises Inconsistent, an AssertionError, with the sentence if the estimator is shown not
+        to be consistent within the margin, or if nothing could be judged. Too few runs to decide
+        are no error."""
+        if self._json["gate"] == "inconsistent" or self.answer == "untested":
+            raise Inconsistent(self.sentence)
+
+    def __repr__(self) -> str:
+        return "\n".join([self.sentence, *("note: " + note for note in self.notes)])
+
+    def _repr_html_(self) -> str:
+        colour = {"consistent": "#2a7d3f", "undecided": "#777", "untested": "#777"}
+        notes = "".join(f"<li>{html.escape(note)}</li>" for note in self.notes)
+        return (f"<p><b style='color:{colour.get(self.answer, '#b3261e')}'>{self.answer}</b>, NEES "
+                f"ratio {self.ratio.estimate:.3g} [{self.ratio.lower:.3g}, {self.ratio.upper:.3g}]"
+                f"<br>{html.escape(self.sentence)}</p>" + (f"<ul>{notes}</ul>" if notes else ""))
+
+
+def judge(errors, covariances, times=None, nis=None, names=None, within: float = 1.1, *,
+          nis_dof=None, path: Optional[str] = None) -> Judgement:
+    """Judges the errors of an estimator by the covariances that it states.
+
+    Parameters
+    ----------
+    errors : array_like, {run, scan, d}, or {scan, d} of one run
+        Estimate minus truth, in the frame and chart of the covariance. Runs are independent. A scan
+        whose errors are all NaN is missing.
+    covariances : array_like, {run, scan, d, d}, or {scan, d, d}
+        The covariance that the estimator stated for each error.
+    times : array_like, {scan} or {run, scan}, optional
+        Times [s]; by default the numbers of the scans.
+    nis, nis_dof : array_like, {run, scan}, optional
+        Normalised innovations squared, and their numbers of components (an array or one number),
+        which are judged too. NaN where nothing was observed.
+    names : sequence of str, {d}, optional
+        Names of the components, with a unit, e.g. ["x_m", "heading_rad"].
+    within : float
+        Ratios of squared errors from 1 / within to within are consistent.
+    path : str, optional
+        Where to keep the result file; by default a temporary one.
+
+    Returns
+    -------
+    Judgement
+
+    Raises
+    ------
+    ValueError
+        If arrays do not fit, with the reason and a remedy.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> errors = np.random.default_rng(1).standard_normal((300, 100, 2))
+    >>> judge(errors, np.broadcast_to(np.eye(2), (300, 100, 2, 2))).answer
+    'consistent'
+    >>> judge(errors, np.broadcast_to(0.8 * np.eye(2), (300, 100, 2, 2))).answer
+    'optimistic'
+    """
+    return _judge({"error": errors}, covariances, times, nis, nis_dof, names, within, path)
+
+
+def judge_estimates(estimates, truths, covariances, error: Optional[str] = None, times=None,
+                    nis=None, names=("x_m", "y_m", "heading_rad"), within: float = 1.1, *,
+                    nis_dof=None, path: Optional[str] = None) -> Judgement:
+    """Judges estimates by their truths, of poses by the error that the covariance describes.
+
+    Parameters
+    ----------
+    estimates : array_like, {run, scan, column}, or {scan, column} of one run
+        States in the order of `names`. A scan that is all NaN is missing.
+    truths : array_like, like `estimates`, or {scan, column} of all runs
+        True states.
+    covariances : array_like, {run, scan, d, d}, or {scan, d, d}
+        Covariances [units of the components], for poses position first.
+    error : str, optional
+        "world", "body" or "right-invariant": the error of the covariance of a pose (`montecarta
+        judge --help`).
+    names : sequence of str
+        Columns of the state; ["x_m", "y_m", "z_m", "qx", "qy", "qz", "qw"] is a pose in space.
+
+    Other parameters, what is returned and what is raised are those of `judge`.
+    """
+    truths = np.asarray(truths, float)
+    if np.ndim(estimates) == 2:
+        truths = truths.reshape(-1, *np.shape(estimates))
+    return _judge({"mean": estimates, "truth": truths}, covariances, times, nis, nis_dof, names,
+                  within, path, [] if error is None else ["--error", error])
+
+
+def _judge(states, covariances, times, nis, nis_dof, names, within, path, options=()):
+    import h5py
+
+    arrays = {name: np.asarray(values, float) for name, values in states.items()}
+    arrays["covariance"] = np.asarray(covariances, float)
+    if arrays["covariance"].ndim == 3:  # one run
+        arrays |= {name: values[np.newaxis] for name, values in arrays.items()
+                   if values.ndim == (3 if name == "covariance" else 2)}
+    of_scans = next(iter(arrays.values())).shape[:2]
+    if times is not None:
+        arrays["time"] = np.asarray(times, float)
+    if nis is not None:
+        arrays["nis"] = np.reshape(np.asarray(nis, float), of_scans)
+        if nis_dof is None:
+            raise ValueError("nis needs nis_dof, the number of components of each: give it")
+        arrays["nis_dof"] = np.broadcast_to(np.asarray(nis_dof, float), of_scans)
+    with tempfile.TemporaryDirectory() as folder:
+        given = os.path.join(folder, "estimates.h5")
+        with h5py.File(given, "w") as file:
+            for name, values in arrays.items():
+                file[name] = values
+            if names is not None:
+                file.attrs["names"] = ",".join(names)
+        path = path or os.path.join(tempfile.mkdtemp(prefix="montecarta-"), "result.h5")
+        done = _call("judge", given, "-o", os.fspath(path), "--force", "--within", str(within),
+                     *options)
+    notes = [line.removeprefix("montecarta: note: ") for line in done.stderr.splitlines()
+             if line.startswith("montecarta: note: ")]
+    return Judgement(os.fspath(path), notes, within)
+
+
+def run(study: str, output: str, settings: Optional[dict] = None) -> Results:
+    """Runs a study and returns its results. Progress is shown where standard error is a terminal.
+
+    Parameters
+    ----------
+    study : str
+        A study file, or the name of a shipped one, e.g. "first_study".
+    output : str
+        The result file. An unfinished one is continued; one that is finished is kept.
+    settings : dict, optional
+        Changed settings, e.g. {"study.runs": 100}.
+
+    Raises
+    ------
+    subprocess.CalledProcessError
+        If the program fails; it says why on standard error.
+    """
+    changes = [word for name, value in (settings or {}).items()
+               for word in ("--set", f"{name}={value}")]
+    unfinished = ["--resume"] if os.path.exists(f"{output}.part") else []
+    if not os.path.exists(output) or unfinished:
+        subprocess.run([program(), "run", study, "-o", os.fspath(output), *changes, *unfinished],
+                       check=True, stdout=subprocess.DEVNULL)
+    return Results(output)
 
 
 class Results:
@@ -76,12 +317,14 @@ class Results:
             names |= {axis: components for axis in ("error_component", "error_component_column")}
         return cell.assign_coords(names)
 
-    def tables(self, program="montecarta", *options):
+    def tables(self, program=None, *options):
         """What `montecarta analyze` says, as {name: pandas.DataFrame}: "cells" has verdicts, errors
         and costs, "families" the tests of each verdict, "consistency" the average NEES by every
         covariance, "series_LABEL" everything over time. `options` as for the command, e.g.
-        "--within", "1.2". Raises subprocess.CalledProcessError where the program fails."""
+        "--within", "1.2"; without `program` it is that of program(). Raises
+        subprocess.CalledProcessError where the program fails."""
         with tempfile.TemporaryDirectory() as folder:
+            program = program or globals()["program"]()
             subprocess.run([program, "analyze", self.path, "--csv", folder, "--force", *options],
                            check=True, stdout=subprocess.DEVNULL)
             return {name.removesuffix(".csv"): _table(os.path.join(folder, name))

@@ -391,8 +391,9 @@ std::string within_words(const Verdict& verdict) {
 std::string more_runs_words(const Verdict& verdict) {
   if (complete_runs(verdict) < kFewestRunsOfAPlan) {
     const std::string runs = "take at least " + std::to_string(kFewestRunsOfAPlan) + " runs";
-    const double drive = verdict.drive_that_decides.value_or(kNaN);
-    return std::isfinite(drive) ? runs + ", or a drive of " + duration_text(drive) : runs;
+    if (!(verdict.drive_that_decides < 1e6)) return runs;
+    return runs + ", or a drive " + readable(std::ceil(verdict.drive_that_decides)) +
+           " times as long";
   }
   if (!verdict.more_runs) return "many more runs decide";
   return "about " + std::to_string(*verdict.more_runs) + " more runs decide";

@@ -160,9 +160,10 @@ struct Verdict {
   std::uint64_t unusable = 0;  ///< number of samples without a finite error or a covariance matrix
   std::uint64_t missing = 0;   ///< number of scans of complete runs without an estimate
   std::optional<std::uint64_t> more_runs = {};  ///< number of further runs that decide, if known
-  /// [s] Length of a drive that decides, in a study of fewer than kFewestJudgedRuns runs whose
-  /// errors forget as those of this one do; infinite if none would.
-  std::optional<double> drive_that_decides = {};
+  /// Number of times that a drive must be as long to decide, in a study of fewer than
+  /// kFewestJudgedRuns runs, if errors forget as they do here; infinite if none would, NaN in
+  /// others.
+  double drive_that_decides = kNaN;
   /// Whether a deviation is shown to be beyond the margin, at `level` for all tests together: only
   /// then is the filter refused. A deviation within the margin is called slight.
   bool is_refused = false;

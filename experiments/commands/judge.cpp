@@ -10,10 +10,14 @@
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/output_path.hpp"
 #include "experiments/commands/stored_result.hpp"
+#include "experiments/judging/estimate_arrays.hpp"
+#include "experiments/judging/estimate_files.hpp"
 #include "experiments/judging/judged_study.hpp"
+#include "experiments/judging/run_files.hpp"
 #include "experiments/text/words.hpp"
 
 #include <iostream>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -53,21 +57,42 @@ JudgingOptions judging_options(const Arguments& arguments) {
   return options;
 }
 
+/// The estimates that the operands name: CSV files with their truths, or one HDF5 file of arrays.
+std::unique_ptr<EstimateSource> source_of(const Arguments& arguments,
+                                          const JudgingOptions& options) {
+  const std::vector<std::string>& operands = arguments.operands();
+  const std::vector<std::string> truths = arguments.texts("truth");
+  if (operands.size() == 1 && has_arrays(operands.front())) {
+    if (truths.empty()) {
+      return std::make_unique<EstimateArrays>(operands.front(),
+                                              arguments.text("cell").value_or("estimate"));
+    }
+    throw StudyError("--truth: not beside " + operands.front() +
+                     " (arrays have their truth in the same file): leave it out");
+  }
+  if (truths.empty()) {
+    throw StudyError(
+        "judge: --truth PATH... is missing (an error is estimate minus truth): name "
+        "the true states");
+  }
+  return std::make_unique<EstimateFiles>(pair_files(operands, truths, arguments.text("cell")),
+                                         options.match.tolerance, options.equal_times);
+}
+
 }  // namespace
 
 int judge_command(const Arguments& arguments) {
   const JudgingOptions options = judging_options(arguments);
-  const JudgedFiles files =
-      pair_files(arguments.operands(), arguments.texts("truth"), arguments.text("cell"));
-  const std::vector<std::string> notes = judge_files(files, options);
+  const std::unique_ptr<EstimateSource> source = source_of(arguments, options);
+  const std::vector<std::string> notes = judge_estimates(*source, options);
   const ResultFile file(options.output);
   print_summary(std::cout, analyze(file, kUsualLevel, parallel_of(arguments)),
                 engine::output_width());
   print_where_to_look(options.output.string(), "");
   for (const std::string& note : notes) std::cerr << "montecarta: note: " << note << "\n";
-  std::cerr << "montecarta: " << files.runs.size()
-            << (files.runs.size() == 1 ? " run of " : " runs of ") << files.cells.size()
-            << (files.cells.size() == 1 ? " estimator" : " estimators") << ", stored in "
+  std::cerr << "montecarta: " << source->runs().size()
+            << (source->runs().size() == 1 ? " run of " : " runs of ") << source->cells().size()
+            << (source->cells().size() == 1 ? " estimator" : " estimators") << ", stored in "
             << options.output.string() << "\n";
   return kDone;
 }

@@ -3,12 +3,8 @@
 
 #include "analysis/run/nees.hpp"
 #include "engine/errors.hpp"
-#include "engine/records/fingerprint.hpp"
 #include "engine/records/posix_file.hpp"
-#include "experiments/files/files.hpp"
-#include "experiments/judging/innovation_rows.hpp"
 #include "experiments/judging/likely_mistakes.hpp"
-#include "experiments/judging/read_rows.hpp"
 #include "experiments/judging/scan_clock.hpp"
 #include "experiments/text/words.hpp"
 
@@ -147,14 +143,6 @@ std::vector<Pose> truths_of_scans(const std::vector<MatchedRows>& cells, std::si
   return truths;
 }
 
-StateRows read_with_innovations(const fs::path& path, double tolerance, EqualTimes equal_times) {
-  StateRows rows = read_estimates(path, equal_times);
-  if (const auto beside = innovations_beside(path)) {
-    read_innovations(*beside, path, tolerance, rows);
-  }
-  return rows;
-}
-
 /// Throws StudyError if the tolerance does not tell the rows of a file apart.
 void require_tolerance(const fs::path& path, std::span<const double> times, double tolerance) {
   const double least = least_spacing(times);
@@ -172,22 +160,23 @@ struct Overview {
   ScanClock clock;
 };
 
-Overview overview_of(const JudgedFiles& files, double tolerance, EqualTimes equal_times) {
+Overview overview_of(const EstimateSource& source, double tolerance) {
   std::vector<std::vector<double>> times;
-  fs::path longest;
+  std::pair<std::size_t, std::size_t> longest;
   std::size_t most = 0;
-  for (const EstimatorFiles& cell : files.cells) {
-    for (const fs::path& path : cell.of_run) {
-      times.push_back(times_in(path, equal_times));
-      require_tolerance(path, times.back(), tolerance);
-      if (!longest.empty() && times.back().size() <= most) continue;
-      longest = path;
+  for (std::size_t c = 0; c < source.cells().size(); ++c) {
+    for (std::size_t run = 0; run < source.runs().size(); ++run) {
+      times.push_back(source.times(c, run));
+      require_tolerance(source.place(c, run), times.back(), tolerance);
+      if (times.back().size() <= most) continue;
+      longest = {c, run};
       most = times.back().size();
     }
   }
-  StateRows rows = read_with_innovations(longest, tolerance, equal_times);
-  if (most > 0) return {longest, std::move(rows), ScanClock(times, tolerance)};
-  throw StudyError(longest.string() +
+  const auto [c, run] = longest;
+  StateRows rows = source.estimates(c, run);
+  if (most > 0) return {source.place(c, run), std::move(rows), ScanClock(times, tolerance)};
+  throw StudyError(source.place(c, run).string() +
                    ": no rows behind the header, nor in any other file (nothing to judge): write "
                    "one row for each time");
 }
@@ -234,22 +223,22 @@ std::uint64_t missing_in(const MatchedRows& run, const ScanClock& clock) {
   return end - run.scans.size();
 }
 
-std::vector<std::string> write_runs(const JudgedFiles& files, const JudgingOptions& options,
+std::vector<std::string> write_runs(const EstimateSource& source, const JudgingOptions& options,
                                     const Overview& all, const StudyPlan& plan,
                                     ResultWriter& writer) {
   const std::vector<RecordLayout> layouts = layouts_of(plan, Detail::usual);
   UnwrappedInnovations unwrapped;
-  LikelyMistakes mistakes(files, *options.convention);
+  LikelyMistakes mistakes(source.cells(), *options.convention);
   TruthUse use;
   std::uint64_t missing = 0;
-  for (std::size_t run = 0; run < files.runs.size(); ++run) {
-    const StateRows truth_rows = read_truth(files.truth[run], all.rows.shape, options.equal_times);
-    mistakes.add_truth(truth_rows, files.truth[run]);
-    const TruthPath truth(truth_rows, files.truth[run], options.match);
+  for (std::size_t run = 0; run < source.runs().size(); ++run) {
+    const StateRows truth_rows = source.truth(run, all.rows.shape);
+    mistakes.add_truth(truth_rows, source.truth_place(run));
+    const TruthPath truth(truth_rows, source.truth_place(run), options.match);
     std::vector<MatchedRows> cells;
-    for (std::size_t c = 0; c < files.cells.size(); ++c) {
-      const fs::path& path = files.cells[c].of_run[run];
-      StateRows rows = read_with_innovations(path, options.match.tolerance, options.equal_times);
+    for (std::size_t c = 0; c < source.cells().size(); ++c) {
+      const fs::path path = source.place(c, run);
+      StateRows rows = source.estimates(c, run);
       unwrapped.add(rows);
       require_alike(rows, path, all.rows, all.path);
       mistakes.add(c, rows, path, truth_rows);
@@ -270,7 +259,8 @@ std::vector<std::string> write_runs(const JudgedFiles& files, const JudgingOptio
       writer.write(c, run, record);
     }
   }
-  std::vector<std::string> notes = unwrapped.notes();
+  std::vector<std::string> notes = source.notes();
+  std::ranges::copy(unwrapped.notes(), std::back_inserter(notes));
   std::ranges::copy(notes_on_times(all, missing), std::back_inserter(notes));
   std::ranges::copy(use.notes(), std::back_inserter(notes));
   std::ranges::copy(mistakes.notes(), std::back_inserter(notes));
@@ -320,16 +310,6 @@ class ImportedDrives final : public DriveSource {
   Itinerary itinerary_;
 };
 
-/// SHA-256 of the contents of all files, in their order, and of the innovations beside each.
-std::string contents_of(const std::vector<std::filesystem::path>& files) {
-  std::string all;
-  for (const std::filesystem::path& file : files) {
-    all += sha256(whole_file(file)) + "\n";
-    if (const auto beside = innovations_beside(file)) all += sha256(whole_file(*beside)) + "\n";
-  }
-  return sha256(all);
-}
-
 TextPairs import_settings(const StateRows& first, const JudgingOptions& options) {
   return {{"state", name_of(first.shape.kind)},
           {"error", name_of(*options.convention)},
@@ -337,25 +317,21 @@ TextPairs import_settings(const StateRows& first, const JudgingOptions& options)
           {"units", joined(first.shape.units)}};
 }
 
-std::string import_text(const JudgedFiles& files, const TextPairs& settings) {
+std::string import_text(const EstimateSource& source, const TextPairs& settings) {
+  const std::vector<std::uint64_t>& runs = source.runs();
+  TextPairs all = settings;
+  all.emplace_back("runs", std::to_string(runs.front()) + ":" + std::to_string(runs.back() + 1));
+  std::ranges::copy(source.contents(), std::back_inserter(all));
   std::string text = std::string(kImportedSection) + "\n";
-  const auto add = [&](const std::string& name, const std::string& value) {
-    text += name + " = " + value + "\n";
-  };
-  for (const auto& [name, value] : settings) add(name, value);
-  add("runs", std::to_string(files.runs.front()) + ":" + std::to_string(files.runs.back() + 1));
-  if (!files.names.empty()) add("names of runs", joined(files.names));
-  add("truth_sha256", contents_of(files.truth));
-  for (const EstimatorFiles& cell : files.cells)
-    add("sha256 of " + cell.cell, contents_of(cell.of_run));
+  for (const auto& [name, value] : all) text += name + " = " + value + "\n";
   return text;
 }
 
-Cell imported_cell(const EstimatorFiles& files, const StateRows& first, const TextPairs& settings) {
+Cell imported_cell(const std::string& label, const StateRows& first, const TextPairs& settings) {
   Cell cell;
-  cell.label = files.cell;
+  cell.label = label;
   cell.filter = "imported";
-  cell.long_name = files.cell + " (imported)";
+  cell.long_name = label + " (imported)";
   cell.imported = ImportedError{.components = first.shape.dimension(),
                                 .has_innovations = !first.nis.empty(),
                                 .has_conventions = conventions_of(first.shape.kind).size() > 1,
@@ -365,17 +341,17 @@ Cell imported_cell(const EstimatorFiles& files, const StateRows& first, const Te
 }
 
 /// The plan that defines the layout of the result file; it cannot be run. The text of the plan
-/// contains the SHA-256 of all files, so that results of the same estimates, judged with the same
-/// options, have the same study_sha256.
-StudyPlan imported_plan(const JudgedFiles& files, const Overview& all_files,
+/// contains the SHA-256 of all estimates, so that results of the same estimates, judged with the
+/// same options, have the same study_sha256.
+StudyPlan imported_plan(const EstimateSource& source, const Overview& all_files,
                         const JudgingOptions& options) {
   const StateRows& first = all_files.rows;
   const TextPairs settings = import_settings(first, options);
   StudyPlan plan;
   plan.name = options.output.stem().string();
   plan.title = "Imported estimates: " + plan.name;
-  plan.first_run = files.runs.front();
-  plan.last_run = plan.runs = files.runs.back() + 1;
+  plan.first_run = source.runs().front();
+  plan.last_run = plan.runs = source.runs().back() + 1;
   plan.columns = {.ancestry = false, .scans_only = true};
   plan.drives = std::make_shared<ImportedDrives>(all_files.clock.times(),
                                                  first.shape.kind == StateKind::pose);
@@ -388,24 +364,26 @@ StudyPlan imported_plan(const JudgedFiles& files, const Overview& all_files,
   }
   TextPairs all = settings;
   all.insert(all.end(), plan.scenario.begin() + 1, plan.scenario.end());
-  plan.resolved_text = import_text(files, all);
+  plan.resolved_text = import_text(source, all);
   if (options.within) plan.resolved_text += "[study]\nwithin = " + to_text(*options.within) + "\n";
-  for (const EstimatorFiles& cell : files.cells)
-    plan.cells.push_back(imported_cell(cell, first, settings));
+  for (const std::string& label : source.cells())
+    plan.cells.push_back(imported_cell(label, first, settings));
   return plan;
 }
 
 }  // namespace
 
-std::vector<std::string> judge_files(const JudgedFiles& files, const JudgingOptions& given) {
-  const Overview all = overview_of(files, given.match.tolerance, given.equal_times);
+std::vector<std::string> judge_estimates(const EstimateSource& source,
+                                         const JudgingOptions& given) {
+  const Overview all = overview_of(source, given.match.tolerance);
   JudgingOptions options = given;
-  options.convention = stated_error(all, given.convention);
-  const StudyPlan plan = imported_plan(files, all, options);
+  options.convention =
+      source.has_errors() ? ErrorConvention::world : stated_error(all, given.convention);
+  const StudyPlan plan = imported_plan(source, all, options);
   ResultWriter writer =
       ResultWriter::create(options.output, plan, options.provenance, options.existing);
   try {
-    std::vector<std::string> notes = write_runs(files, options, all, plan, writer);
+    std::vector<std::string> notes = write_runs(source, options, all, plan, writer);
     writer.finish();
     return notes;
   } catch (...) {

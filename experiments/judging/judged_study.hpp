@@ -5,7 +5,7 @@
 #include "engine/records/result_description.hpp"
 #include "engine/records/result_writer.hpp"
 #include "experiments/judging/error_convention.hpp"
-#include "experiments/judging/run_files.hpp"
+#include "experiments/judging/estimate_source.hpp"
 #include "experiments/judging/truth_path.hpp"
 
 #include <filesystem>
@@ -32,7 +32,8 @@ struct JudgingOptions {
 /// analysed like that of a study. Trajectories are not aligned. Memory grows with the
 /// number of runs by their times alone. Returns notes on contents that are judged as they are, but
 /// are likely a mistake. Throws StudyError with file, line and remedy, and then leaves no file.
-std::vector<std::string> judge_files(const JudgedFiles& files, const JudgingOptions& options);
+std::vector<std::string> judge_estimates(const EstimateSource& source,
+                                         const JudgingOptions& options);
 
 /// Beginning of the text of an imported study, with which no study file begins.
 inline constexpr std::string_view kImportedSection = "[imported]";

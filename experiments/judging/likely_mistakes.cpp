@@ -88,9 +88,9 @@ std::string remaining(const StateShape& shape, const std::vector<std::string>& n
 
 }  // namespace
 
-LikelyMistakes::LikelyMistakes(const JudgedFiles& files, ErrorConvention convention)
-    : convention_(convention), on_names_(note_on_names(files)) {
-  for (const EstimatorFiles& cell : files.cells) cells_.emplace_back().label = cell.cell;
+LikelyMistakes::LikelyMistakes(std::span<const std::string> cells, ErrorConvention convention)
+    : convention_(convention) {
+  for (const std::string& label : cells) cells_.emplace_back().label = label;
 }
 
 LikelyMistakes::Misfit LikelyMistakes::misfit(const StateRows& rows, std::size_t row,
@@ -218,7 +218,7 @@ void LikelyMistakes::add_notes(const OfCell& cell, std::vector<std::string>& not
 
 std::vector<std::string> LikelyMistakes::notes() const {
   std::vector<std::string> notes;
-  std::ranges::copy_if(std::vector{on_names_, on_times_, on_angles_}, std::back_inserter(notes),
+  std::ranges::copy_if(std::vector{on_times_, on_angles_}, std::back_inserter(notes),
                        [](const std::string& note) { return !note.empty(); });
   if (left_out_ > 0) {
     notes.push_back(std::to_string(left_out_) + (left_out_ == 1 ? " row is" : " rows are") +

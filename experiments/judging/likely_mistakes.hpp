@@ -2,13 +2,13 @@
 #pragma once
 
 #include "experiments/judging/error_convention.hpp"
-#include "experiments/judging/run_files.hpp"
 #include "experiments/judging/state_rows.hpp"
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,12 +20,12 @@ namespace montecarta::experiments {
 class LikelyMistakes {
  public:
   /// The errors of the estimates are those of `convention`.
-  LikelyMistakes(const JudgedFiles& files, ErrorConvention convention);
+  LikelyMistakes(std::span<const std::string> cells, ErrorConvention convention);
 
   /// Adds the truth of a run. Throws StudyError if angles are in another unit than their columns
   /// say.
   void add_truth(const StateRows& truth, const std::filesystem::path& path);
-  /// Adds one file of the estimator `cell` of JudgedFiles::cells, with the truth of its run, which
+  /// Adds one file of the estimator `cell`, with the truth of its run, which
   /// was added before. Throws StudyError if times or angles are in another unit than their columns
   /// say.
   void add(std::size_t cell, const StateRows& rows, const std::filesystem::path& path,
@@ -75,7 +75,7 @@ class LikelyMistakes {
   std::filesystem::path truth_path_;  ///< file of the last truth
   std::uint64_t left_out_ = 0;        ///< number of rows of one time that were not kept
   std::string first_left_out_;        ///< the first file with one
-  std::string on_angles_, on_times_, on_names_;
+  std::string on_angles_, on_times_;
 };
 
 }  // namespace montecarta::experiments

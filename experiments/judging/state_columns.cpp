@@ -249,7 +249,8 @@ bool is_of_state(const std::string& name) {
 /// Tolerance of the length of a quaternion that was printed with three digits.
 constexpr double kQuaternionPlaceSlack = 2e-3;
 
-/// Normalises the quaternion at the end of the state of a pose in space.
+}  // namespace
+
 void normalise_quaternion(Eigen::VectorXd& state, const std::string& place) {
   const double length = state.tail<4>().norm();
   if (std::abs(length - 1.0) > kQuaternionPlaceSlack) {
@@ -259,8 +260,6 @@ void normalise_quaternion(Eigen::VectorXd& state, const std::string& place) {
   state.tail<4>() /= length;
 }
 
-/// The number of components of a NIS. Throws StudyError that begins with `place` if `nis` is not a
-/// sum of squares or `dof` is not a count.
 std::uint32_t checked_dof(double nis, double dof, const std::string& place) {
   constexpr double kMostComponents = 1e6;
   if (nis >= 0.0 && dof >= 0.0 && dof <= kMostComponents && dof == std::floor(dof)) {
@@ -270,8 +269,6 @@ std::uint32_t checked_dof(double nis, double dof, const std::string& place) {
                    " (a sum of squares and its number of components are needed): write 0 "
                    "and 0 if nothing was observed");
 }
-
-}  // namespace
 
 std::string name_of(StateKind kind) {
   return kind == StateKind::pose            ? "pose"

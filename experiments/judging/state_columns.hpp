@@ -76,6 +76,13 @@ Eigen::MatrixXd covariance_in(const CsvRows& rows, const EstimateFields& fields)
 /// are no sum of squares and its count.
 std::pair<double, std::uint32_t> nis_in(const CsvRows& file, const EstimateFields& fields);
 
+/// Normalises the quaternion at the end of the state of a pose in space.
+void normalise_quaternion(Eigen::VectorXd& state, const std::string& place);
+
+/// The number of components of a NIS. Throws StudyError that begins with `place` if `nis` is not a
+/// sum of squares or `dof` is not a count.
+std::uint32_t checked_dof(double nis, double dof, const std::string& place);
+
 /// Whether element `k` of a state is an angle, which is the same after a full turn.
 bool is_angle(const StateShape& shape, Eigen::Index k);
 

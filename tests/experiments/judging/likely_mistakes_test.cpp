@@ -38,9 +38,8 @@ Eigen::VectorXd planar(double unknown) {
 /// Notes on estimates, whose truth is at 1 m.
 std::string notes_on(const StateRows& rows,
                      const StateRows& truth = rows_with(Eigen::VectorXd::Zero(6), 1.0)) {
-  JudgedFiles files;
-  files.cells.push_back({"ekf", {}});
-  LikelyMistakes mistakes(files, ErrorConvention::world);
+  const std::vector<std::string> cells = {"ekf"};
+  LikelyMistakes mistakes(cells, ErrorConvention::world);
   mistakes.add_truth(truth, "truth.csv");
   mistakes.add(0, rows, "ekf/run_0.csv", truth);
   return joined(mistakes.notes(), "\n");

@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/judging/estimate_arrays.hpp"
+
+#include "engine/errors.hpp"
+#include "engine/records/fingerprint.hpp"
+#include "experiments/files/files.hpp"
+#include "experiments/judging/state_columns.hpp"
+#include "experiments/text/words.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <numeric>
+#include <span>
+#include <utility>
+
+namespace montecarta::experiments {
+namespace {
+
+std::string axes_text(const h5::Shape& shape) {
+  std::vector<std::string> lengths;
+  for (const auto length : shape) lengths.push_back(std::to_string(length));
+  return "{" + joined(lengths) + "}";
+}
+
+bool is_all_nan(std::span<const double> numbers) {
+  return std::ranges::all_of(numbers, [](double x) { return std::isnan(x); });
+}
+
+bool is_all_finite(std::span<const double> numbers) {
+  return std::ranges::all_of(numbers, [](double x) { return std::isfinite(x); });
+}
+
+/// The header of a CSV file with these columns of a state of `dimension` components.
+std::vector<std::string> header_of(const std::vector<std::string>& columns, std::size_t dimension) {
+  std::vector<std::string> header = {kTimeColumn};
+  header.insert(header.end(), columns.begin(), columns.end());
+  for (std::size_t i = 0; i < dimension; ++i) {
+    for (std::size_t j = 0; j < dimension; ++j)
+      header.push_back("cov_" + std::to_string(i) + "_" + std::to_string(j));
+  }
+  return header;
+}
+
+}  // namespace
+
+bool has_arrays(const std::filesystem::path& path) {
+  const std::string signature = "\x89HDF\r\n\x1a\n";
+  std::string head(signature.size(), '\0');
+  std::ifstream file(path, std::ios::binary);
+  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  return file.good() && head == signature;
+}
+
+EstimateArrays::EstimateArrays(std::filesystem::path path, std::string cell)
+    : path_(std::move(path)),
+      file_(h5::open_file(path_)),
+      cells_{std::move(cell)},
+      states_(open(h5::has(file_, "error") ? "error" : "mean", 3)),
+      covariance_(open("covariance", 4)),
+      truth_(find("truth", 3)),
+      time_(find("time", 2)),
+      nis_(find("nis", 2)),
+      nis_dof_(find("nis_dof", 2)) {
+  require_order();
+  const auto runs = states_.shape[0], scans = states_.shape[1], d = covariance_.shape[3];
+  require_axes(covariance_, {runs, scans, d, d}, "{run, scan, d, d}");
+  if (runs == 0 || scans == 0 || d == 0) refuse(states_.name, "is empty: write a run at least");
+  if (states_.name == "error") {
+    require_axes(states_, {runs, scans, d}, "{run, scan, d}");
+    if (truth_) refuse("truth", "is beside error (which one is it?): remove one of them");
+  } else if (!truth_) {
+    refuse("truth", "is missing (mean is compared with it): add it, or write error");
+  } else {
+    require_axes(*truth_, {runs, scans, states_.shape[2]}, "{run, scan, column}, as mean");
+  }
+  if (time_) require_axes(*time_, {runs, scans}, "{run, scan}");
+  if (nis_.has_value() != nis_dof_.has_value()) {
+    refuse(nis_ ? "nis" : "nis_dof", "needs nis and nis_dof together: add the other one");
+  }
+  if (nis_) require_axes(*nis_, {runs, scans}, "{run, scan}");
+  if (nis_dof_) require_axes(*nis_dof_, {runs, scans}, "{run, scan}");
+  runs_.resize(runs);
+  std::iota(runs_.begin(), runs_.end(), std::uint64_t{0});
+  shape_ = shape_of_names();
+}
+
+/// Throws StudyError if MATLAB or Julia wrote the arrays, which turn the order of axes round.
+void EstimateArrays::require_order() const {
+  const h5::Shape& of = states_.shape;
+  const bool is_turned = covariance_.shape == h5::Shape{of[0], of[0], of[1], of[2]};
+  if (!is_turned || covariance_.shape == h5::Shape{of[0], of[1], of[2], of[2]}) return;
+  refuse("covariance", "has the axes " + axes_text(covariance_.shape) +
+                           " (the order of MATLAB and Julia, in which a file has them turned "
+                           "round): write permute(covariance, [4 3 2 1]), and the other arrays "
+                           "turned round too");
+}
+
+void EstimateArrays::refuse(const std::string& name, const std::string& reason) const {
+  throw StudyError(path_.string() + ": " + name + " " + reason);
+}
+
+/// Opens an array of `axes` axes, of which that of runs may be left out if all runs share it.
+EstimateArrays::Array EstimateArrays::open(const std::string& name, std::size_t axes) const {
+  if (!h5::has(file_, name)) {
+    refuse(name,
+           "is missing (arrays are error, or mean and truth, with covariance): write it, as "
+           "experiments/JUDGING_ESTIMATES.md shows");
+  }
+  if (h5::is_group(file_, name)) refuse(name, "is a group (an array is needed): write an array");
+  Array array{h5::open_dataset(file_, name), {}, name};
+  array.shape = h5::shape(array.dataset);
+  const bool may_be_shared = name == "truth" || name == "time";
+  array.has_runs = array.shape.size() == axes;
+  if (!array.has_runs && !(may_be_shared && array.shape.size() + 1 == axes)) {
+    refuse(name, "has the axes " + axes_text(array.shape) + " (" + std::to_string(axes) +
+                     " are needed, the first of runs): give an array of one run an axis of "
+                     "length 1");
+  }
+  return array;
+}
+
+std::optional<EstimateArrays::Array> EstimateArrays::find(const std::string& name,
+                                                          std::size_t axes) const {
+  if (!h5::has(file_, name)) return std::nullopt;
+  return open(name, axes);
+}
+
+void EstimateArrays::require_axes(const Array& array, const h5::Shape& wanted,
+                                  std::string_view axes) const {
+  const std::size_t first = array.has_runs ? 0 : 1;
+  if (std::ranges::equal(array.shape, std::span(wanted).subspan(first))) return;
+  refuse(array.name, "has the axes " + axes_text(array.shape) + " (" + std::string(axes) + " is " +
+                         axes_text(wanted) + "): write them in this order");
+}
+
+/// The shape of the state by the attribute `names`; without it the columns are e0, e1, ...
+StateShape EstimateArrays::shape_of_names() const {
+  const auto width = static_cast<std::size_t>(states_.shape[2]);
+  const auto d = static_cast<std::size_t>(covariance_.shape[2]);
+  std::vector<std::string> columns;
+  if (const auto names = h5::find_text(file_, "names")) {
+    columns = split(*names, ',');
+  } else {
+    for (std::size_t k = 0; k < width; ++k) columns.push_back("e" + std::to_string(k));
+  }
+  if (columns.size() != width) {
+    refuse("names", "has " + std::to_string(columns.size()) + " columns (" + states_.name +
+                        " has " + std::to_string(width) + "): name each column once");
+  }
+  StateShape shape = estimate_fields(header_of(columns, d), path_.string() + ": names").shape;
+  if (shape.dimension() != d) {
+    refuse("covariance", "has " + std::to_string(d) + " components (the state has " +
+                             std::to_string(shape.dimension()) + "): write that of the error");
+  }
+  if (shape.columns != columns) {
+    refuse("names", "are not in the order of montecarta: write " + joined(shape.columns, ","));
+  }
+  if (!has_errors()) return shape;
+  shape.kind = StateKind::vector;
+  shape.columns = shape.components;
+  return shape;
+}
+
+std::vector<double> EstimateArrays::numbers(const Array& array, std::size_t run) const {
+  std::size_t count = 1;
+  for (std::size_t k = array.has_runs ? 1 : 0; k < array.shape.size(); ++k) count *= array.shape[k];
+  std::vector<double> values(count);
+  const auto bytes = std::as_writable_bytes(std::span(values));
+  if (array.has_runs) {
+    h5::read_row(array.dataset, run, Element::f64, bytes);
+  } else {
+    h5::read(array.dataset, Element::f64, bytes);
+  }
+  return values;
+}
+
+/// The states of a run at the scans that have one, with their times and, as lines, their scans.
+/// Throws StudyError if some numbers of a state are missing, or times do not increase.
+StateRows EstimateArrays::states_of(const Array& array, std::size_t run,
+                                    const std::string& place) const {
+  const std::size_t width = states_.shape[2];
+  const std::vector<double> all = numbers(array, run);
+  const std::vector<double> time = time_ ? numbers(*time_, run) : std::vector<double>();
+  StateRows rows{.shape = shape_};
+  for (std::size_t s = 0; s < states_.shape[1]; ++s) {
+    const auto state = std::span(all).subspan(s * width, width);
+    if (is_all_nan(state)) continue;
+    const std::string scan = place + ":" + std::to_string(s);
+    if (!is_all_finite(state)) {
+      throw StudyError(scan + ": some numbers of " + array.name +
+                       " are not finite (a scan is missing if all are NaN): give all, or none");
+    }
+    const double at = time.empty() ? static_cast<double>(s) : time[s];
+    if (!std::isfinite(at) || (!rows.time.empty() && !(at > rows.time.back()))) {
+      throw StudyError(scan + ": time " + to_text(at) +
+                       " s is not later than that of the scan before: sort the scans by time");
+    }
+    rows.time.push_back(at);
+    rows.line.push_back(s);
+    rows.state.emplace_back(
+        Eigen::VectorXd::Map(state.data(), static_cast<Eigen::Index>(state.size())));
+    if (shape_.kind == StateKind::pose_in_space) normalise_quaternion(rows.state.back(), scan);
+  }
+  return rows;
+}
+
+std::filesystem::path EstimateArrays::place(std::size_t /*cell*/, std::size_t run) const {
+  return path_.string() + " (run " + std::to_string(run) + ", scan)";
+}
+
+std::filesystem::path EstimateArrays::truth_place(std::size_t run) const {
+  return path_.string() + " (truth of run " + std::to_string(run) + ", scan)";
+}
+
+std::vector<double> EstimateArrays::times(std::size_t cell, std::size_t run) const {
+  return states_of(states_, run, place(cell, run)).time;
+}
+
+StateRows EstimateArrays::estimates(std::size_t cell, std::size_t run) const {
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  StateRows rows = states_of(states_, run, place(cell, run));
+  const std::vector<double> covariance = numbers(covariance_, run);
+  const auto d = static_cast<Eigen::Index>(shape_.dimension());
+  for (const std::size_t s : rows.line) {
+    const double* const first = covariance.data() + s * static_cast<std::size_t>(d * d);
+    rows.covariance.emplace_back(Eigen::Map<const RowMajor>(first, d, d));
+  }
+  if (!nis_) return rows;
+  const std::vector<double> nis = numbers(*nis_, run), dof = numbers(*nis_dof_, run);
+  for (const std::size_t s : rows.line) {
+    const bool is_known = !std::isnan(nis[s]);
+    const std::string scan = place(cell, run).string() + ":" + std::to_string(s);
+    rows.nis.push_back(is_known ? nis[s] : 0.0);
+    rows.nis_dof.push_back(is_known ? checked_dof(nis[s], dof[s], scan) : 0);
+  }
+  return rows;
+}
+
+StateRows EstimateArrays::truth(std::size_t run, const StateShape& /*shape*/) const {
+  if (truth_) return states_of(*truth_, run, truth_place(run));
+  StateRows rows{.shape = shape_};
+  if (time_) rows.time = numbers(*time_, run);
+  rows.time.resize(states_.shape[1]);
+  if (!time_) std::iota(rows.time.begin(), rows.time.end(), 0.0);
+  rows.line.resize(rows.time.size());
+  std::iota(rows.line.begin(), rows.line.end(), std::size_t{0});
+  rows.state.assign(rows.time.size(),
+                    Eigen::VectorXd::Zero(static_cast<Eigen::Index>(shape_.width())));
+  return rows;
+}
+
+TextPairs EstimateArrays::contents() const {
+  std::string all;
+  for (const Array* array : {&states_, &covariance_, truth_ ? &*truth_ : nullptr,
+                             time_ ? &*time_ : nullptr, nis_ ? &*nis_ : nullptr}) {
+    for (std::size_t run = 0; array != nullptr && run < (array->has_runs ? runs_.size() : 1);
+         ++run) {
+      const std::vector<double> values = numbers(*array, run);
+      const auto bytes = std::as_bytes(std::span(values));
+      all += sha256({reinterpret_cast<const char*>(bytes.data()), bytes.size()}) + "\n";
+    }
+  }
+  return {{"arrays_sha256", sha256(all)}};
+}
+
+}  // namespace montecarta::experiments

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/records/h5.hpp"
+#include "experiments/judging/estimate_source.hpp"
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace montecarta::experiments {
+
+/// Returns whether a file is in HDF5, and no result of montecarta.
+bool has_arrays(const std::filesystem::path& path);
+
+/// Estimates of one estimator in the arrays of an HDF5 file:
+/// `error` {run, scan, d}, or `mean` {run, scan, column} and `truth` {run, scan, column} or
+/// {scan, column}; `covariance` {run, scan, d, d}; and, if there are, `time` {scan} or
+/// {run, scan} [s], `nis` {run, scan} with `nis_dof` {run, scan}, and the text attribute `names`,
+/// the columns of the state as in a CSV file. A scan whose numbers are all NaN is missing.
+class EstimateArrays final : public EstimateSource {
+ public:
+  /// Throws StudyError if arrays are missing or their axes do not fit.
+  EstimateArrays(std::filesystem::path path, std::string cell);
+
+  const std::vector<std::string>& cells() const override { return cells_; }
+  const std::vector<std::uint64_t>& runs() const override { return runs_; }
+  std::filesystem::path place(std::size_t cell, std::size_t run) const override;
+  std::filesystem::path truth_place(std::size_t run) const override;
+  std::vector<double> times(std::size_t cell, std::size_t run) const override;
+  StateRows estimates(std::size_t cell, std::size_t run) const override;
+  StateRows truth(std::size_t run, const StateShape& shape) const override;
+  bool has_errors() const override { return !truth_.has_value(); }
+  TextPairs contents() const override;
+  std::vector<std::string> notes() const override { return {}; }
+
+ private:
+  /// A dataset of numbers with its axes.
+  struct Array {
+    h5::Handle dataset;
+    h5::Shape shape;
+    std::string name;
+    bool has_runs = true;  ///< whether the first axis is that of runs
+  };
+
+  Array open(const std::string& name, std::size_t axes) const;
+  std::optional<Array> find(const std::string& name, std::size_t axes) const;
+  void require_order() const;
+  void require_axes(const Array& array, const h5::Shape& wanted, std::string_view axes) const;
+  /// Throws StudyError that names the array.
+  [[noreturn]] void refuse(const std::string& name, const std::string& reason) const;
+  StateShape shape_of_names() const;
+  /// The numbers of one run, or all if the array has no axis of runs.
+  std::vector<double> numbers(const Array& array, std::size_t run) const;
+  StateRows states_of(const Array& array, std::size_t run, const std::string& place) const;
+
+  std::filesystem::path path_;
+  h5::Handle file_;
+  std::vector<std::string> cells_;
+  std::vector<std::uint64_t> runs_;
+  Array states_;  ///< `error` or `mean`
+  Array covariance_;
+  std::optional<Array> truth_, time_, nis_, nis_dof_;
+  StateShape shape_;
+};
+
+}  // namespace montecarta::experiments

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/judging/estimate_files.hpp"
+
+#include "engine/records/fingerprint.hpp"
+#include "experiments/files/files.hpp"
+#include "experiments/judging/innovation_rows.hpp"
+#include "experiments/judging/read_rows.hpp"
+#include "experiments/text/words.hpp"
+
+#include <utility>
+
+namespace montecarta::experiments {
+namespace {
+
+/// SHA-256 of the contents of all files, in their order, and of the innovations beside each.
+std::string sha256_of(const std::vector<std::filesystem::path>& files) {
+  std::string all;
+  for (const std::filesystem::path& file : files) {
+    all += sha256(whole_file(file)) + "\n";
+    if (const auto beside = innovations_beside(file)) all += sha256(whole_file(*beside)) + "\n";
+  }
+  return sha256(all);
+}
+
+}  // namespace
+
+EstimateFiles::EstimateFiles(JudgedFiles files, double tolerance, EqualTimes equal_times)
+    : files_(std::move(files)), tolerance_(tolerance), equal_times_(equal_times) {
+  for (const EstimatorFiles& cell : files_.cells) cells_.push_back(cell.cell);
+}
+
+std::vector<double> EstimateFiles::times(std::size_t cell, std::size_t run) const {
+  return times_in(place(cell, run), equal_times_);
+}
+
+StateRows EstimateFiles::estimates(std::size_t cell, std::size_t run) const {
+  const std::filesystem::path path = place(cell, run);
+  StateRows rows = read_estimates(path, equal_times_);
+  if (const auto beside = innovations_beside(path)) {
+    read_innovations(*beside, path, tolerance_, rows);
+  }
+  return rows;
+}
+
+StateRows EstimateFiles::truth(std::size_t run, const StateShape& shape) const {
+  return read_truth(files_.truth[run], shape, equal_times_);
+}
+
+TextPairs EstimateFiles::contents() const {
+  TextPairs all;
+  if (!files_.names.empty()) all.emplace_back("names of runs", joined(files_.names));
+  all.emplace_back("truth_sha256", sha256_of(files_.truth));
+  for (const EstimatorFiles& cell : files_.cells)
+    all.emplace_back("sha256 of " + cell.cell, sha256_of(cell.of_run));
+  return all;
+}
+
+std::vector<std::string> EstimateFiles::notes() const {
+  std::string note = note_on_names(files_);
+  if (note.empty()) return {};
+  return {std::move(note)};
+}
+
+}  // namespace montecarta::experiments

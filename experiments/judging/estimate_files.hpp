@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "experiments/judging/estimate_source.hpp"
+#include "experiments/judging/run_files.hpp"
+
+#include <string>
+#include <vector>
+
+namespace montecarta::experiments {
+
+/// Estimates in CSV files, one for each run, with innovations beside them.
+class EstimateFiles final : public EstimateSource {
+ public:
+  /// `tolerance` [s] is that of the times of innovations.
+  EstimateFiles(JudgedFiles files, double tolerance, EqualTimes equal_times);
+
+  const std::vector<std::string>& cells() const override { return cells_; }
+  const std::vector<std::uint64_t>& runs() const override { return files_.runs; }
+  std::filesystem::path place(std::size_t cell, std::size_t run) const override {
+    return files_.cells[cell].of_run[run];
+  }
+  std::filesystem::path truth_place(std::size_t run) const override { return files_.truth[run]; }
+  std::vector<double> times(std::size_t cell, std::size_t run) const override;
+  StateRows estimates(std::size_t cell, std::size_t run) const override;
+  StateRows truth(std::size_t run, const StateShape& shape) const override;
+  bool has_errors() const override { return false; }
+  TextPairs contents() const override;
+  std::vector<std::string> notes() const override;
+
+ private:
+  JudgedFiles files_;
+  std::vector<std::string> cells_;
+  double tolerance_;
+  EqualTimes equal_times_;
+};
+
+}  // namespace montecarta::experiments
