@@ -171,6 +171,21 @@ std::vector<std::string> largest_notes(const StudyAnalysis& study) {
   return notes;
 }
 
+/// Makes a sentence for each cell, where innovations are all that can be judged.
+std::vector<Section::Block> leads_of(const StudyAnalysis& study) {
+  std::vector<Section::Block> leads;
+  if (study.has_truth || !study.references.empty()) return leads;
+  for (const CellAnalysis& cell : study.cells) {
+    const Innovations* found = cell.find<Innovations>();
+    if (found == nullptr) continue;
+    const double ratio = found->ratio;
+    leads.emplace_back(Section::Lead{
+        cell.label + ": innovations are " + whiteness_in_words(*found) + "; NIS per component " +
+        with_interval(ratio, found->verdict.ratio()) + ", where 1 is right."});
+  }
+  return leads;
+}
+
 std::vector<Section> innovations_sections(const StudyAnalysis& study) {
   const CellNumber nis = [](const CellAnalysis& cell) { return cell.get<Innovations>().ratio; };
   const CellEntries row = [&](const CellAnalysis& cell) {
@@ -179,7 +194,11 @@ std::vector<Section> innovations_sections(const StudyAnalysis& study) {
   std::vector<Section> sections = table_section(
       section_of("innovations", {{"nis", range_over_cells(study, nis)}}), cell_table(study, row),
       {{"lags", std::to_string(kInnovationLags)}, {"runs", std::to_string(kFewestRunsOfSize)}});
-  for (Section& section : sections) section.add(largest_notes(study));
+  for (Section& section : sections) {
+    const std::vector<Section::Block> leads = leads_of(study);
+    section.blocks.insert(section.blocks.begin(), leads.begin(), leads.end());
+    section.add(largest_notes(study));
+  }
   return sections;
 }
 

@@ -71,6 +71,7 @@ const CellAnalysis* baseline_of(const StudyAnalysis& study) {
 }
 
 std::string no_truth_sentence(const StudyAnalysis& study) {
+  if (study.references.empty()) return prose("references", "no reference");
   const bool has_errors = std::ranges::any_of(study.references, &JudgedReference::has_errors);
   return prose("references", has_errors ? "known errors" : "no truth");
 }

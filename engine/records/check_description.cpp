@@ -173,7 +173,11 @@ void check_columns(const StoredCell& cell, const Check& check) {
               !has(columns, "pose_covariance_mixture"),
           "cells/" + cell.label + " has pose_covariance_mixture and no pose_covariance");
   }
-  check(cell.has("pose_mean") || cell.has("error"), "cells/" + cell.label + " has no pose_mean");
+  const std::pair<std::string, std::string> alone = {"state", "innovations"};
+  const bool has_innovations_alone =
+      cell.has("nis") && std::ranges::find(cell.settings, alone) != cell.settings.end();
+  check(cell.has("pose_mean") || cell.has("error") || has_innovations_alone,
+        "cells/" + cell.label + " has no pose_mean");
   check(cell.label.size() <= kLongestLabel, "the label of a cell is too long");
 }
 

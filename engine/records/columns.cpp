@@ -85,6 +85,9 @@ bool has_map(const Cell& cell) { return cell.landmarks > 0; }
 bool has_joint(const Cell& cell) { return cell.reports.joint; }
 bool is_imported(const Cell& cell) { return cell.imported.has_value(); }
 bool is_filter(const Cell& cell) { return !is_imported(cell); }
+bool has_imported_error(const Cell& cell) {
+  return is_imported(cell) && cell.imported->components > 0;
+}
 bool has_pose(const Cell& cell) { return is_filter(cell) || cell.imported->has_pose; }
 bool has_conventions(const Cell& cell) {
   return is_imported(cell) && cell.imported->has_conventions;
@@ -143,10 +146,10 @@ std::vector<ColumnKind> make_table() {
           "numerical_faults", "pose", u32, "factorisations answered by a fallback",
           [](Report r) { return static_cast<double>(r.numerical_faults); }, nullptr),
       column("error", "pose", f64, {scan, error_component}, "as the cell's setting units",
-             "imported: error of the estimate, by the cell's setting error", is_imported),
+             "imported: error of the estimate, by the cell's setting error", has_imported_error),
       column("error_covariance", "pose", f64, {scan, error_component, error_component_column},
              "products of the cell's setting units",
-             "imported: covariance of error, as the other program reported it", is_imported),
+             "imported: covariance of error, as the other program reported it", has_imported_error),
       nees_by(kErrorConventions[0]),
       nees_by(kErrorConventions[1]),
       nees_by(kErrorConventions[2]),

@@ -116,8 +116,8 @@ int gate_command(const Arguments& arguments) {
   const std::string place = file.path().string();
   if (!file.has_errors()) {
     throw StudyError(place +
-                     ": a recorded drive without truth (its errors are unknown): gate a simulated "
-                     "study, or see the scores against references by montecarta analyze");
+                     ": has no truth (a gate judges errors): gate a study with a truth, or see "
+                     "references and innovations by montecarta analyze");
   }
   require_all_runs(file, stored);
   const CellAnalysis cell =

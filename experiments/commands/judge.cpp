@@ -12,6 +12,7 @@
 #include "experiments/commands/stored_result.hpp"
 #include "experiments/judging/estimate_arrays.hpp"
 #include "experiments/judging/estimate_files.hpp"
+#include "experiments/judging/innovation_files.hpp"
 #include "experiments/judging/judged_study.hpp"
 #include "experiments/judging/run_files.hpp"
 #include "experiments/text/words.hpp"
@@ -69,6 +70,12 @@ std::unique_ptr<EstimateSource> source_of(const Arguments& arguments,
     }
     throw StudyError("--truth: not beside " + operands.front() +
                      " (arrays have their truth in the same file): leave it out");
+  }
+  if (arguments.has("innovations")) {
+    if (truths.empty()) {
+      return std::make_unique<InnovationFiles>(pair_files(operands, {}, arguments.text("cell")));
+    }
+    throw StudyError("--truth: not beside --innovations (innovations need no truth): leave it out");
   }
   if (truths.empty()) {
     throw StudyError(

@@ -10,7 +10,7 @@
 namespace montecarta::experiments {
 
 /// Estimates in CSV files, one for each run, with innovations beside them.
-class EstimateFiles final : public EstimateSource {
+class EstimateFiles : public EstimateSource {
  public:
   /// `tolerance` [s] is that of the times of innovations.
   EstimateFiles(JudgedFiles files, double tolerance, EqualTimes equal_times);

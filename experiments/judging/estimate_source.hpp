@@ -34,6 +34,8 @@ class EstimateSource {
   virtual StateRows truth(std::size_t run, const StateShape& shape) const = 0;
   /// Whether states are errors already, so that no convention needs to be stated.
   virtual bool has_errors() const = 0;
+  /// Whether there are states and truths, and not innovations alone.
+  virtual bool has_states() const { return true; }
 
   /// (name, value) What identifies the contents: the same of the same estimates.
   virtual TextPairs contents() const = 0;

@@ -223,11 +223,34 @@ std::uint64_t missing_in(const MatchedRows& run, const ScanClock& clock) {
   return end - run.scans.size();
 }
 
+/// Writes innovations alone, which have no truth.
+void write_innovations(const EstimateSource& source, const Overview& all, const StudyPlan& plan,
+                       ResultWriter& writer, UnwrappedInnovations& unwrapped) {
+  const std::vector<RecordLayout> layouts = layouts_of(plan, Detail::usual);
+  for (std::size_t run = 0; run < source.runs().size(); ++run) {
+    for (std::size_t c = 0; c < source.cells().size(); ++c) {
+      StateRows rows = source.estimates(c, run);
+      unwrapped.add(rows);
+      std::vector<std::size_t> scans = all.clock.scans_of(rows.time);
+      const std::size_t n = rows.time.size();
+      const MatchedRows matched{std::move(rows), std::move(scans),
+                                std::vector<std::optional<Eigen::VectorXd>>(n)};
+      RunRecord record = record_of(layouts[c], matched, {}, ErrorConvention::world);
+      record.mark_complete(std::numeric_limits<double>::quiet_NaN());
+      writer.write(c, run, record);
+    }
+  }
+}
+
 std::vector<std::string> write_runs(const EstimateSource& source, const JudgingOptions& options,
                                     const Overview& all, const StudyPlan& plan,
                                     ResultWriter& writer) {
   const std::vector<RecordLayout> layouts = layouts_of(plan, Detail::usual);
   UnwrappedInnovations unwrapped;
+  if (!source.has_states()) {
+    write_innovations(source, all, plan, writer, unwrapped);
+    return unwrapped.notes();
+  }
   LikelyMistakes mistakes(source.cells(), *options.convention);
   TruthUse use;
   std::uint64_t missing = 0;
@@ -311,6 +334,7 @@ class ImportedDrives final : public DriveSource {
 };
 
 TextPairs import_settings(const StateRows& first, const JudgingOptions& options) {
+  if (first.shape.dimension() == 0) return {{"state", "innovations"}};
   return {{"state", name_of(first.shape.kind)},
           {"error", name_of(*options.convention)},
           {"components", joined(first.shape.components)},
@@ -377,8 +401,9 @@ std::vector<std::string> judge_estimates(const EstimateSource& source,
                                          const JudgingOptions& given) {
   const Overview all = overview_of(source, given.match.tolerance);
   JudgingOptions options = given;
-  options.convention =
-      source.has_errors() ? ErrorConvention::world : stated_error(all, given.convention);
+  options.convention = source.has_errors() || !source.has_states()
+                           ? ErrorConvention::world
+                           : stated_error(all, given.convention);
   const StudyPlan plan = imported_plan(source, all, options);
   ResultWriter writer =
       ResultWriter::create(options.output, plan, options.provenance, options.existing);

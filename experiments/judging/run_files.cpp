@@ -192,7 +192,7 @@ JudgedFiles pair_files(const std::vector<std::string>& estimates,
   const FilesByRun& first = cells.begin()->second;
   const bool are_called_runs = std::ranges::all_of(files, &NumberedFile::is_called_run);
   const bool has_numbers = are_consecutive(first, are_called_runs);
-  const FilesByRun truth_of = truths_of(first, truths, is_unnumbered);
+  const FilesByRun truth_of = truths.empty() ? first : truths_of(first, truths, is_unnumbered);
   require_same_runs(first, truth_of, "truth", "name its truth after --truth too");
   require_same_runs(truth_of, first, "estimate",
                     "give a failed run, which is a result, the file that it wrote, the header at "

@@ -26,8 +26,9 @@ struct JudgedFiles {
 };
 
 /// Pairs estimates with truths by the numbers in their names (montecarta judge --help). `truths`
-/// are files, folders that `export` made, or their folder truth/. `cell`, if given, is the label of
-/// all estimates. Throws StudyError if a run occurs twice or is missing.
+/// are files, folders that `export` made, or their folder truth/; without any, the estimates stand
+/// in their place. `cell`, if given, is the label of all estimates. Throws StudyError if a run
+/// occurs twice or is missing.
 JudgedFiles pair_files(const std::vector<std::string>& estimates,
                        const std::vector<std::string>& truths,
                        const std::optional<std::string>& cell);

@@ -106,8 +106,10 @@ void print_summary(std::ostream& out, const StudyAnalysis& study, std::size_t wi
     out << '\n';
   } else {
     for (const Section& section : terminal_sections(study)) {
-      const bool has_references = section.name == "drive" || section.name == "references";
-      if (has_references) print_section_tables(out, section, width);
+      const bool is_wanted = study.references.empty()
+                                 ? section.name == "innovations"
+                                 : section.name == "drive" || section.name == "references";
+      if (is_wanted) print_section_tables(out, section, width);
     }
   }
   print_cautions(out, study, width);

@@ -3,6 +3,7 @@
 #include "analysis/study/metric.hpp"
 #include "analysis/study/registry.hpp"
 #include "analysis/study/study_analysis.hpp"
+#include "engine/random/stream.hpp"
 #include "engine/records/result_file.hpp"
 #include "experiments/text/words.hpp"
 #include "tests/doubles/matchers.hpp"
@@ -313,6 +314,31 @@ class JudgeTimes : public Judge {
     return all;
   }
 };
+
+TEST_F(Judge, InnovationsAloneNeedNoTruth) {
+  RngStream draw({.seed = 9, .run = 0, .purpose = Draw::test});
+  for (const std::string run : {"0", "1"}) {
+    std::string text = "time_s,range_m,bearing_rad,cov_0_0,cov_0_1,cov_1_1\n";
+    for (int k = 0; k < 200; ++k) {
+      text += to_text(0.5 * (k / 2)) + "," + to_text(2.0 * draw.normal()) + "," +
+              to_text(0.2 * draw.normal()) +
+              ",1,0,0.01\n";  // two of one time; four times too large
+    }
+    write("innovation_" + run + ".csv", text);
+  }
+  const std::vector<std::string> files = {"innovation_0.csv", "innovation_1.csv"};
+  const Called called = judge(files, {"--innovations", "-o", "mine.h5"});
+  EXPECT_EQ(called.code, 0) << called.err;
+  EXPECT_THAT(called.out, AllOf(HasSubstr("innovation: innovations are white, optimistic"),
+                                HasSubstr("2 runs, 100 scans each")));
+  EXPECT_EQ(call({"gate", "mine.h5"}).code, 2);
+  EXPECT_EQ(call({"report", "mine.h5", "-o", "report"}).code, 0);
+  EXPECT_THAT(judge(files, {"--innovations", "-o", "m.h5", "--truth", "t.csv"}).err,
+              HasSubstr("--truth: not beside --innovations"));
+  write("innovation_1.csv", "time_s,range_m,cov_0_0\n2,1,1\n1,1,1\n");
+  EXPECT_THAT(judge(files, {"--innovations", "-o", "m.h5"}).err, HasSubstr("innovation_1.csv:3"));
+  EXPECT_FALSE(exists("m.h5"));
+}
 
 TEST_F(Judge, RunsThatAreNotAlikeAreNamed) {
   write("truth_0.csv", "time_s,x_m\n1,0\n2,0\n");
