@@ -304,8 +304,8 @@ class Ledger:
             measured, verdict = compared.pop(in_table, ("-", None))
             answer, rest = answer_of(verdict) if verdict else (NOT_YET, PUBLISH)
             in_words = name.replace(each["metric"], each["metric"].replace("_", " "))
-            rows.append(row_of(in_words, each.get("note", ""), measured, answer, page=page, rest=rest,
-                               name=name, is_number="cell" in each))
+            rows.append(row_of(in_words, each.get("note", ""), measured, answer, page=page,
+                               rest=rest, name=name, is_number="cell" in each))
         if compared:
             raise PrintedError(f"{path}: the page {page} compares {next(iter(compared))}, which is "
                                "no claim: add the statement")
@@ -415,10 +415,12 @@ def print_ledger(ledger):
     print_text(
         "This page was written by `experiments/claims.py` from the other pages. *Where* is the "
         "section, equation, table or figure. Names of cells and "
-        "metrics are those of the page that the answer leads to, which also says what was assumed. "
+        "metrics are those of the page that the answer leads to, which also says what was assumed, as "
+        "does the .printed file of its study, which may be newer. "
         "A claim *metric: a < b* is answered by the difference a - b, run by run. A claim in words "
         "with a column of a page is answered by both numbers, and decided if their intervals do "
-        "not overlap. What *agrees* is explained in "
+        "not overlap. *Stays above from* is the time [s] at which the average NEES leaves its band "
+        "for good, *share inside* the share of scans in the band. What *agrees* is explained in "
         "[STUDY_FILES](../STUDY_FILES.md#compare-with-what-a-paper-printed); a number that does is "
         "confirmed.")
     for paper in ledger.papers:
