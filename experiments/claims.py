@@ -415,7 +415,7 @@ def print_ledger(ledger):
     print_text(
         "This page was written by `experiments/claims.py` from the other pages. *Where* is the "
         "section, equation, table or figure. Names of cells and "
-        "metrics are those of the page that the answer leads to, which also says what was assumed, as "
+        "metrics are those of the page that the answer leads to, which says what was assumed, as "
         "does the .printed file of its study, which may be newer. "
         "A claim *metric: a < b* is answered by the difference a - b, run by run. A claim in words "
         "with a column of a page is answered by both numbers, and decided if their intervals do "
