@@ -16,12 +16,12 @@ The .printed file beside a study has one statement per line:
     claim = position_rmse srcd < ufastslam note="Fig. 3"
     assume = Loops: the paper does not say; two.
 
-Cells are named by their labels. A metric is a column of runs.csv, or share_inside_BLOCK,
-share_above_BLOCK or stays_above_from_BLOCK (pose, position, heading), which compare the average
-NEES of all runs with a band: that of the paper, or else the chi-square band for the number of runs.
-These metrics depend on the number of runs, so they are computed for every BATCH, a folder that
-`analyze --csv` wrote for a part of the study with as many runs as in the paper. Needs NumPy and
-SciPy.
+A note that begins with "not in the paper" marks a comparison of our own. Cells are named by their
+labels. A metric is a column of runs.csv, or share_inside_BLOCK, share_above_BLOCK or
+stays_above_from_BLOCK (pose, position, heading), which compare the average NEES of all runs with a
+band: that of the paper, or else the chi-square band for the number of runs. These metrics depend on
+the number of runs, so they are computed for every BATCH, a folder that `analyze --csv` wrote for a
+part of the study with as many runs as in the paper. Needs NumPy and SciPy.
 """
 import argparse
 import csv
@@ -52,14 +52,14 @@ class PrintedError(Exception):
 # ---- Numbers in the paper
 
 
-def fields_of(text, required, optional):
-    """The fields key=value of a line as a dictionary."""
+def fields_of(words, required, optional):
+    """The fields key=value as a dictionary."""
     fields = {}
-    for word in shlex.split(text):
+    for word in words:
         key, equals, value = word.partition("=")
         if not equals or key not in required + optional or key in fields or not value:
             raise ValueError(f"'{word}' is not understood: write {'=... '.join(required)}=..., and "
-                             f"of {', '.join(optional)} what applies, each once")
+                             f"of {', '.join(optional) or 'nothing else'} what applies, each once")
         fields[key] = value
     absent = [key for key in required if key not in fields]
     if absent:
@@ -75,7 +75,8 @@ def count_in(text):
 
 
 def value_of(text):
-    value = fields_of(text, ["cell", "metric", "printed"], ["relative_to", "runs", "note"])
+    value = fields_of(shlex.split(text), ["cell", "metric", "printed"],
+                      ["relative_to", "runs", "note"])
     value["number"] = float(value["printed"])
     if not math.isfinite(value["number"]):
         raise ValueError(f"printed={value['printed']} is no finite number: write it as the paper "
@@ -108,10 +109,11 @@ def band_of(text):
     return words[0], (float(words[1]), float(words[2]))
 
 
-def read_printed(path):
-    """The statements of a .printed file as a dictionary by key. Raises PrintedError."""
-    printed = {"source": "", "runs": None, "baseline": "", "band": {}, "value": [], "claim": [],
-               "assume": []}
+def read_statements(path, parsers, repeated):
+    """The statements KEY = TEXT of a file: {key: parsed}, of the keys in `repeated` a list, else
+    None where there is no statement. `parsers` {key: parse(text)} may raise ValueError. Raises
+    PrintedError."""
+    statements = {key: [] if key in repeated else None for key in parsers}
     try:
         with open(path, encoding="utf-8") as file:
             lines = file.read().splitlines()
@@ -122,25 +124,31 @@ def read_printed(path):
             continue
         key, equals, text = (part.strip() for part in line.partition("="))
         try:
-            if not equals or key not in printed or not text:
+            if not equals or key not in parsers or not text:
                 raise ValueError(f"'{line[:60]}' is not understood: write KEY = TEXT with one of "
-                                 f"{', '.join(printed)}")
-            if key == "band":
-                block, band = band_of(text)
-                if block in printed[key]:
-                    raise ValueError(f"band of the {block} is given twice: remove one of the two")
-                printed[key][block] = band
-            elif key in ("value", "claim"):
-                printed[key].append(value_of(text) if key == "value" else claim_of(text))
-            elif key == "assume":
-                printed[key].append(text)
-            elif printed[key]:
+                                 f"{', '.join(parsers)}")
+            parsed = parsers[key](text)
+            if key in repeated:
+                statements[key].append(parsed)
+            elif statements[key] is not None:
                 raise ValueError(f"{key} is given twice: remove one of the two")
             else:
-                printed[key] = count_in(text) if key == "runs" else text
+                statements[key] = parsed
         except ValueError as error:
             raise PrintedError(f"{path}:{number}: {error}") from None
-    return printed
+    return statements
+
+
+def read_printed(path):
+    """The statements of a .printed file as a dictionary by key. Raises PrintedError."""
+    printed = read_statements(
+        path, {"source": str, "runs": count_in, "baseline": str, "band": band_of,
+               "value": value_of, "claim": claim_of, "assume": str},
+        ("band", "value", "claim", "assume"))
+    bands = dict(printed["band"])
+    if len(bands) < len(printed["band"]):
+        raise PrintedError(f"{path}: a band is given twice: remove one of the two")
+    return printed | {"band": bands, "source": printed["source"] or ""}
 
 
 # ---- Measured numbers
@@ -333,6 +341,16 @@ def judge_claim(claim, printed, measured, batches):
 # ---- Markdown
 
 
+def name_of_value(value):
+    """What the tables call the metric of a printed number."""
+    return value["metric"] + (f", relative to {value['relative_to']}" if "relative_to" in value
+                              else "")
+
+
+def name_of_claim(claim):
+    return f"{claim['metric']}: {claim['left']} {claim['relation']} {claim['right']}"
+
+
 def number_text(number):
     return "-" if math.isnan(number) else "never" if math.isinf(number) else f"{number:.4g}"
 
@@ -341,13 +359,17 @@ def interval_text(interval):
     return "-" if interval is None else f"[{number_text(interval[0])}, {number_text(interval[1])}]"
 
 
+def escaped(text):
+    """Text as Markdown that shows it as it is."""
+    return re.sub(r"([\\|_~<>\[\]])", r"\\\1", text)
+
+
 def print_table(headings, rows):
     if not rows:
         return
     print("\n| " + " | ".join(headings) + " |\n|" + "---|" * len(headings))
     for row in rows:
-        escaped = [re.sub(r"([\\|_~<>\[\]])", r"\\\1", field) for field in row]
-        print("| " + " | ".join(escaped) + " |")
+        print("| " + " | ".join(map(escaped, row)) + " |")
 
 
 def compare(printed, measured, batches):
@@ -361,14 +383,12 @@ def compare(printed, measured, batches):
     for value in printed["value"]:
         mean, interval, verdict = judge_value(value, printed, measured, batches)
         verdict = another_world(value, printed, measured, batches) or verdict
-        what = value["metric"] + (f", relative to {value['relative_to']}"
-                                  if "relative_to" in value else "")
-        values.append([value["cell"], what, value["printed"], number_text(mean),
+        values.append([value["cell"], name_of_value(value), value["printed"], number_text(mean),
                        interval_text(interval), verdict, value.get("note", "")])
     for claim in printed["claim"]:
         difference, interval, verdict = judge_claim(claim, printed, measured, batches)
-        claims.append([f"{claim['metric']}: {claim['left']} {claim['relation']} {claim['right']}",
-                       number_text(difference), interval_text(interval), verdict, claim["note"]])
+        claims.append([name_of_claim(claim), number_text(difference), interval_text(interval),
+                       verdict, claim["note"]])
     print_table(["cell", "metric", "paper printed", "we measure", "95 % interval", "verdict",
                  "where"], values)
     print_table(["paper says", "we measure: left - right", "95 % interval", "verdict", "where"],
