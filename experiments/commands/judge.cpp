@@ -52,6 +52,7 @@ JudgingOptions judging_options(const Arguments& arguments) {
   options.match.interpolate = arguments.has("interpolate");
   options.match.longest_gap = arguments.number("longest-gap", 0.0, 1e9);
   options.equal_times = equal_times_of(arguments);
+  if (const auto names = arguments.text("components")) options.components = split(*names, ',');
   options.existing = arguments.has("force") ? Existing::replace : Existing::refuse;
   options.provenance = provenance_of("judge", arguments);
   options.within = arguments.number("within", kLeastMargin, kMostMargin);

@@ -104,9 +104,29 @@ void put_pose(const MatchedRows& run, std::size_t row, const Pose& truth,
            column("pose_covariance"));
 }
 
-/// The record of one run of one estimator. Scans without an estimate stay NaN, and are missing.
+/// Indices of the components that are judged: those of `wanted`, or all. Throws StudyError with the
+/// known names if there is no such component.
+std::vector<Eigen::Index> judged_components(const StateShape& shape,
+                                            const std::vector<std::string>& wanted) {
+  std::vector<Eigen::Index> judged;
+  for (const std::string& name : wanted.empty() ? shape.components : wanted) {
+    const auto found = std::ranges::find(shape.components, name);
+    if (found == shape.components.end()) {
+      throw StudyError("--components: no component '" + excerpt(name) + "' (the state has " +
+                       joined(shape.components, ",") + "): choose among them");
+    }
+    judged.push_back(found - shape.components.begin());
+  }
+  std::ranges::sort(judged);
+  judged.erase(std::unique(judged.begin(), judged.end()), judged.end());
+  return judged;
+}
+
+/// The record of one run of one estimator, with the errors of the `judged` components. Scans
+/// without an estimate stay NaN, and are missing.
 RunRecord record_of(const RecordLayout& layout, const MatchedRows& run,
-                    const std::vector<Pose>& scan_truths, ErrorConvention convention) {
+                    const std::vector<Pose>& scan_truths, ErrorConvention convention,
+                    const std::vector<Eigen::Index>& judged) {
   RunRecord record(layout);
   const StateRows& rows = run.rows;
   const auto column = [&](const char* name) { return record.column<double>(*layout.find(name)); };
@@ -119,11 +139,12 @@ RunRecord record_of(const RecordLayout& layout, const MatchedRows& run,
     }
     if (!run.truths[row]) continue;
     const Eigen::VectorXd error =
-        error_of(rows.shape, convention, rows.state[row], *run.truths[row]);
+        error_of(rows.shape, convention, rows.state[row], *run.truths[row])(judged);
+    const Eigen::MatrixXd covariance = rows.covariance[row](judged, judged);
     put_rows(error, s, column("error"));
-    put_rows(rows.covariance[row], s, column("error_covariance"));
-    faults[s] = analysis::imported_nees(error, rows.covariance[row]).is_usable() ? 0 : 1;
-    if (rows.shape.kind == StateKind::pose) put_pose(run, row, scan_truths[s], convention, record);
+    put_rows(covariance, s, column("error_covariance"));
+    faults[s] = analysis::imported_nees(error, covariance).is_usable() ? 0 : 1;
+    if (layout.find("pose_mean")) put_pose(run, row, scan_truths[s], convention, record);
     put_conventions(run, row, record);
   }
   return record;
@@ -235,7 +256,7 @@ void write_innovations(const EstimateSource& source, const Overview& all, const 
       const std::size_t n = rows.time.size();
       const MatchedRows matched{std::move(rows), std::move(scans),
                                 std::vector<std::optional<Eigen::VectorXd>>(n)};
-      RunRecord record = record_of(layouts[c], matched, {}, ErrorConvention::world);
+      RunRecord record = record_of(layouts[c], matched, {}, ErrorConvention::world, {});
       record.mark_complete(std::numeric_limits<double>::quiet_NaN());
       writer.write(c, run, record);
     }
@@ -251,6 +272,7 @@ std::vector<std::string> write_runs(const EstimateSource& source, const JudgingO
     write_innovations(source, all, plan, writer, unwrapped);
     return unwrapped.notes();
   }
+  const auto judged = judged_components(all.rows.shape, options.components);
   LikelyMistakes mistakes(source.cells(), *options.convention);
   TruthUse use;
   std::uint64_t missing = 0;
@@ -277,7 +299,7 @@ std::vector<std::string> write_runs(const EstimateSource& source, const JudgingO
       writer.write_truth(run, drive);
     }
     for (std::size_t c = 0; c < cells.size(); ++c) {
-      RunRecord record = record_of(layouts[c], cells[c], scan_truths, *options.convention);
+      RunRecord record = record_of(layouts[c], cells[c], scan_truths, *options.convention, judged);
       end_run(cells[c], truth, all.clock, record);
       writer.write(c, run, record);
     }
@@ -333,12 +355,18 @@ class ImportedDrives final : public DriveSource {
   Itinerary itinerary_;
 };
 
-TextPairs import_settings(const StateRows& first, const JudgingOptions& options) {
-  if (first.shape.dimension() == 0) return {{"state", "innovations"}};
-  return {{"state", name_of(first.shape.kind)},
+TextPairs import_settings(const StateShape& shape, const JudgingOptions& options) {
+  if (shape.dimension() == 0) return {{"state", "innovations"}};
+  std::vector<std::string> components, units;
+  for (const Eigen::Index k : judged_components(shape, options.components)) {
+    components.push_back(shape.components[static_cast<std::size_t>(k)]);
+    units.push_back(shape.units[static_cast<std::size_t>(k)]);
+  }
+  const bool is_whole = components.size() == shape.dimension();
+  return {{"state", name_of(is_whole ? shape.kind : StateKind::vector)},
           {"error", name_of(*options.convention)},
-          {"components", joined(first.shape.components)},
-          {"units", joined(first.shape.units)}};
+          {"components", joined(components)},
+          {"units", joined(units)}};
 }
 
 std::string import_text(const EstimateSource& source, const TextPairs& settings) {
@@ -351,15 +379,18 @@ std::string import_text(const EstimateSource& source, const TextPairs& settings)
   return text;
 }
 
-Cell imported_cell(const std::string& label, const StateRows& first, const TextPairs& settings) {
+Cell imported_cell(const std::string& label, const StateRows& first, std::size_t components,
+                   const TextPairs& settings) {
+  const bool is_whole = components == first.shape.dimension();
   Cell cell;
   cell.label = label;
   cell.filter = "imported";
   cell.long_name = label + " (imported)";
-  cell.imported = ImportedError{.components = first.shape.dimension(),
-                                .has_innovations = !first.nis.empty(),
-                                .has_conventions = conventions_of(first.shape.kind).size() > 1,
-                                .has_pose = first.shape.kind == StateKind::pose};
+  cell.imported =
+      ImportedError{.components = components,
+                    .has_innovations = !first.nis.empty(),
+                    .has_conventions = is_whole && conventions_of(first.shape.kind).size() > 1,
+                    .has_pose = is_whole && first.shape.kind == StateKind::pose};
   cell.settings = settings;
   return cell;
 }
@@ -370,15 +401,18 @@ Cell imported_cell(const std::string& label, const StateRows& first, const TextP
 StudyPlan imported_plan(const EstimateSource& source, const Overview& all_files,
                         const JudgingOptions& options) {
   const StateRows& first = all_files.rows;
-  const TextPairs settings = import_settings(first, options);
+  const TextPairs settings = import_settings(first.shape, options);
+  const std::size_t components = judged_components(first.shape, options.components).size();
   StudyPlan plan;
   plan.name = options.output.stem().string();
   plan.title = "Imported estimates: " + plan.name;
   plan.first_run = source.runs().front();
   plan.last_run = plan.runs = source.runs().back() + 1;
   plan.columns = {.ancestry = false, .scans_only = true};
+  for (const std::string& label : source.cells())
+    plan.cells.push_back(imported_cell(label, first, components, settings));
   plan.drives = std::make_shared<ImportedDrives>(all_files.clock.times(),
-                                                 first.shape.kind == StateKind::pose);
+                                                 plan.cells.front().imported->has_pose);
   plan.scenario = {{"kind", "imported"},
                    {"tolerance", to_text(options.match.tolerance)},
                    {"interpolate", options.match.interpolate ? "yes" : "no"}};
@@ -390,8 +424,6 @@ StudyPlan imported_plan(const EstimateSource& source, const Overview& all_files,
   all.insert(all.end(), plan.scenario.begin() + 1, plan.scenario.end());
   plan.resolved_text = import_text(source, all);
   if (options.within) plan.resolved_text += "[study]\nwithin = " + to_text(*options.within) + "\n";
-  for (const std::string& label : source.cells())
-    plan.cells.push_back(imported_cell(label, first, settings));
   return plan;
 }
 

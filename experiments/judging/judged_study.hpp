@@ -22,6 +22,7 @@ struct JudgingOptions {
   /// The convention; nullopt if the user gave none, which is allowed for a state that has only one.
   std::optional<ErrorConvention> convention = {};
   TimeMatch match;
+  std::vector<std::string> components = {};  ///< names of those that are judged; empty: all
   EqualTimes equal_times = EqualTimes::refuse;
   Existing existing = Existing::refuse;
   TextPairs provenance;

@@ -72,18 +72,12 @@ std::string of_rows(std::uint64_t some, std::uint64_t all) {
   return std::to_string(some) + " of " + std::to_string(all) + " rows";
 }
 
-/// The columns of a state without some of its components.
+/// The components of a state without some.
 std::string remaining(const StateShape& shape, const std::vector<std::string>& names) {
-  const auto has = [&](const char* name) { return std::ranges::count(names, name) > 0; };
-  if (shape.kind == StateKind::pose_in_space) {
-    const bool is_planar = has("z") && has("rx") && has("ry") && names.size() == 3;
-    return is_planar ? "x_m,y_m,heading_rad" : "the others";
-  }
-  std::vector<std::string> columns;
-  for (std::size_t k = 0; k < shape.width(); ++k) {
-    if (!has(shape.components[k].c_str())) columns.push_back(shape.columns[k]);
-  }
-  return columns.empty() ? "the others" : joined(columns, ",");
+  std::vector<std::string> others;
+  std::ranges::copy_if(shape.components, std::back_inserter(others),
+                       [&](const auto& name) { return std::ranges::count(names, name) == 0; });
+  return joined(others, ",");
 }
 
 }  // namespace
@@ -194,8 +188,8 @@ void LikelyMistakes::add_notes(const OfCell& cell, std::vector<std::string>& not
                     (names.size() == 1 ? " has the variance " : " have the variance ") +
                     to_text(first->value) + " in " + of_rows(first->rows, cell.rows) +
                     ", the first in " + first->first + " (" + reasons[sign] +
-                    "): for a verdict on the others, write files with " +
-                    remaining(cell.shape, names) + " alone");
+                    "): for a verdict on the others, add --components " +
+                    remaining(cell.shape, names));
   }
   for (std::size_t k = 0; k < cell.w_first.size(); ++k) {
     constexpr double kMuchNearer = 0.2;

@@ -315,6 +315,25 @@ class JudgeTimes : public Judge {
   }
 };
 
+TEST_F(Judge, ComponentsMayBeJudgedByThemselves) {
+  for (const std::string run : {"0", "1", "2"})
+    write("e_" + run + ".csv", kHeader + "1,0.5,9,0.25,4,1,2,1,1,0.5,2,0.5,3\n");
+  write("truth.csv", "time_s,x_m,y_m,heading_rad\n1,0,0,0\n");
+  const auto judged = [&](const std::string& components) {
+    return judge({"e_0.csv", "e_1.csv", "e_2.csv"},
+                 {"--truth", "truth.csv", "--error", "world", "-o", "mine.h5", "--force",
+                  "--components", components});
+  };
+  EXPECT_THAT(judged("heading,x").out, HasSubstr("components x, heading"));
+  const ResultFile file(folder_ / "mine.h5");
+  std::vector<double> error(2), covariance(4);
+  file.read(file.cells().front(), "error", 0, std::span(error));
+  file.read(file.cells().front(), "error_covariance", 0, std::span(covariance));
+  EXPECT_THAT(error, ElementsAre(0.5, 0.25));
+  EXPECT_THAT(covariance, ElementsAre(4, 2, 2, 3));
+  EXPECT_THAT(judged("x,z").err, HasSubstr("no component 'z' (the state has x,y,heading)"));
+}
+
 TEST_F(Judge, InnovationsAloneNeedNoTruth) {
   RngStream draw({.seed = 9, .run = 0, .purpose = Draw::test});
   for (const std::string run : {"0", "1"}) {

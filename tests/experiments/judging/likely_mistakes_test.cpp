@@ -50,7 +50,7 @@ TEST(LikelyMistakes, AreVariancesThatMarkComponents) {
     EXPECT_THAT(notes_on(rows_with(planar(mark))),
                 AllOf(HasSubstr("ekf: z, rx, ry have the variance " + to_text(mark)),
                       HasSubstr("10 of 10 rows"), HasSubstr("ekf/run_0.csv:2"),
-                      HasSubstr("x_m,y_m,heading_rad")))
+                      HasSubstr("--components x,y,rz")))
         << mark;
   }
   EXPECT_EQ(notes_on(rows_with(planar(0.01))), "");
