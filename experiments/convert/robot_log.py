@@ -11,7 +11,7 @@ from conversion import ConversionError, np
 
 SORT_WITHIN = 0.1  # [s] rows that are later than this by their time are an error, not sorted
 FALSE_ALARM = -1   # identity of a detection of no known landmark
-TWIST = "forward_mps,left_mps,yaw_rate_radps"
+OMNIDIRECTIONAL = "forward_mps,left_mps,yaw_rate_radps"
 
 
 @dataclasses.dataclass
@@ -151,15 +151,43 @@ def scans_of(rows):
     return list(scans.items())
 
 
-def twist_of(forward, left, turn, duration):
-    """The speeds forward and to the left and the yaw rate that, held for `duration`, move a vehicle
-    by a step in its own frame: the inverse of (1.9) of filters/EQUATIONS.md, with the turn in
-    [-pi, pi]."""
-    turn = math.remainder(turn, 2 * math.pi)
-    half = turn / 2
-    scale = half / math.tan(half) if half else 1.0
-    return ((scale * forward + half * left) / duration, (scale * left - half * forward) / duration,
-            turn / duration)
+def detections_of(path, found, places, source):
+    """The detections `found`, each (line, time, id of the landmark, [component, ...]), as rows
+    (time, identity, component, ...), and the positions of the landmarks. Identities count from 0 in
+    the order of the ids. `places` {id: (x, y)} is from the file `source`; without a file, every
+    landmark that was seen has an identity, and no positions are known."""
+    known = sorted(places if source else {one for _, _, one, _ in found})
+    identity = {one: k for k, one in enumerate(known)}  # ids may have more digits than a double
+    for line, _, one, _ in found:
+        if one not in identity:
+            raise ConversionError(f"{path}:{line}: landmark {one} is not in {source} (if positions "
+                                  "are given, every landmark has one): add it there")
+    rows = Rows(path, np.array([(time, identity[one], *seen) for _, time, one, seen in found]),
+                np.array([line for line, *_ in found]),
+                [f"identities 0 to {len(known) - 1} are the landmarks {known[0]} to {known[-1]}"])
+    return (first_of_each_landmark(without_equal(in_order(rows, math.inf))),
+            [places[one] for one in known] if source else [])
+
+
+def odometry_of(steps):
+    """The odometry of steps (forward, left, turn) in the frame of the vehicle, which begin at time
+    0 and take 1 s each: rows (time, forward, left, yaw rate), the last of which ends the last step.
+    Held for 1 s, the speeds move an omnidirectional vehicle by the step; this inverts (1.9) of
+    filters/EQUATIONS.md, with turns in [-pi, pi]."""
+    rows = []
+    for time, (forward, left, turn) in enumerate(steps):
+        turn = math.remainder(turn, 2 * math.pi)
+        half = turn / 2
+        scale = half / math.tan(half) if half else 1.0
+        rows.append((time, scale * forward + half * left, scale * left - half * forward, turn))
+    return [*rows, (len(rows), 0.0, 0.0, 0.0)]
+
+
+def suggest(settings, source):
+    """Prints settings of a study; `source` says where they are from."""
+    print(f"[belief]    # {source}")
+    for name, value in settings.items():
+        print(f"{name} = {value if isinstance(value, str) else format(value, '.3g')}")
 
 
 def report(*tables):
