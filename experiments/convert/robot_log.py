@@ -22,9 +22,10 @@ class Rows:
     numbers: np.ndarray  # {row, column}
     lines: np.ndarray    # {row} number of its line in the file
     notes: list = dataclasses.field(default_factory=list)  # what was repaired or left out
+    separator: str = ":"                                   # between the file and the line
 
     def place(self, k):
-        return f"{self.path}:{self.lines[k]}"
+        return f"{self.path}{self.separator}{self.lines[k]}"
 
     def taken(self, which, note):
         """The rows `which`, a mask or indices. `note` says why others are missing."""
@@ -92,7 +93,8 @@ def in_order(rows, within=SORT_WITHIN):
     count = np.count_nonzero(late)
     notes = [f"{count} out of order by up to {late.max():.3g} s, sorted"] if count else []
     order = np.argsort(times, kind="stable")
-    return Rows(rows.path, rows.numbers[order], rows.lines[order], rows.notes + notes)
+    return dataclasses.replace(rows, numbers=rows.numbers[order], lines=rows.lines[order],
+                               notes=rows.notes + notes)
 
 
 def without_equal(rows):
@@ -151,7 +153,7 @@ def scans_of(rows):
     return list(scans.items())
 
 
-def detections_of(path, found, places, source):
+def detections_of(path, found, places, source, within=math.inf, separator=":"):
     """The detections `found`, each (line, time, id of the landmark, [component, ...]), as rows
     (time, identity, component, ...), and the positions of the landmarks. Identities count from 0 in
     the order of the ids. `places` {id: (x, y)} is from the file `source`; without a file, every
@@ -160,12 +162,13 @@ def detections_of(path, found, places, source):
     identity = {one: k for k, one in enumerate(known)}  # ids may have more digits than a double
     for line, _, one, _ in found:
         if one not in identity:
-            raise ConversionError(f"{path}:{line}: landmark {one} is not in {source} (if positions "
+            raise ConversionError(f"{path}{separator}{line}: landmark {one} is not in {source} (if positions "
                                   "are given, every landmark has one): add it there")
     rows = Rows(path, np.array([(time, identity[one], *seen) for _, time, one, seen in found]),
                 np.array([line for line, *_ in found]),
-                [f"identities 0 to {len(known) - 1} are the landmarks {known[0]} to {known[-1]}"])
-    return (first_of_each_landmark(without_equal(in_order(rows, math.inf))),
+                [f"identities 0 to {len(known) - 1} are the landmarks {known[0]} to {known[-1]}"],
+                separator)
+    return (first_of_each_landmark(without_equal(in_order(rows, within))),
             [places[one] for one in known] if source else [])
 
 
