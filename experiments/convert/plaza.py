@@ -19,17 +19,20 @@ from conversion import ConversionError, MatFile, np
 COLUMNS = {"GT": ("time", "x", "y", "heading"), "DR": ("time", "distance", "turn"),
            "TD": ("time", "antenna", "node", "range"), "TL": ("node", "x", "y")}
 
+LARGEST_NUMBER = 1e9  # of a node or an antenna
+
 
 def rows_of(file, name):
     """The rows of a matrix of the file."""
     values, columns = file.matrix(name), COLUMNS[name]
     if values.shape[1] != len(columns) or len(values) == 0:
-        raise ConversionError(f"{file.path}: '{name}' is {values.shape[0]} x {values.shape[1]} (its "
-                              f"columns are {', '.join(columns)}): take the file as published")
+        raise ConversionError(f"{file.path}: '{name}' is {values.shape[0]} x {values.shape[1]} "
+                              f"(its columns are {', '.join(columns)}): take the file as "
+                              "published")
     wrong = np.argwhere(~np.isfinite(values))
     if wrong.size:
-        raise ConversionError(f"{file.path}: '{name}': record {wrong[0][0] + 1} is no finite number "
-                              f"(the {columns[wrong[0][1]]}): take the file as published")
+        raise ConversionError(f"{file.path}: '{name}': record {wrong[0][0] + 1} is no finite "
+                              f"number (the {columns[wrong[0][1]]}): take the file as published")
     return robot_log.Rows(f"{file.path}: '{name}'", values, np.arange(1, len(values) + 1),
                           separator=": record ")
 
@@ -37,10 +40,11 @@ def rows_of(file, name):
 def whole(rows, column):
     """A column of whole numbers."""
     values = rows.numbers[:, column]
-    wrong = np.flatnonzero(values != np.floor(values))
+    wrong = np.flatnonzero((values != np.floor(values)) | (np.abs(values) > LARGEST_NUMBER))
     if wrong.size:
-        raise ConversionError(f"{rows.place(wrong[0])}: {values[wrong[0]]:g} is no number of a node "
-                              "(a whole number): take the file as published")
+        raise ConversionError(f"{rows.place(wrong[0])}: {conversion.number_text(values[wrong[0]])} "
+                              "is no number of a node (a whole number): take the file as "
+                              "published")
     return values.astype(int).tolist()
 
 
@@ -66,8 +70,8 @@ def motions_of(rows, within):
 
 
 def odometry_of(motions, start):
-    """The odometry, rows (time, speed, yaw rate), from the time `start` on, and the motions that are
-    used. A motion lasts from the end of the one before, the first from the start."""
+    """The odometry, rows (time, speed, yaw rate), from the time `start` on, and the motions that
+    are used. A motion lasts from the end of the one before, the first from the start."""
     times = motions.numbers[:, 0]
     begins = np.append(start, times[:-1])
     used = times > start
@@ -100,6 +104,7 @@ def convert(arguments):
     motions = motions_of(rows_of(file, "DR"), within)
     ranges = rows_of(file, "TD")
     robot_log.check_ranges(ranges, 3)
+    antennas = set(whole(ranges, 1))
     nodes = nodes_of(rows_of(file, "TL"))
     odometry, motions = odometry_of(motions, path.numbers[0, 0])
     path = with_headings_of_travel(path, motions.numbers[:, 1].sum())
@@ -116,8 +121,8 @@ def convert(arguments):
                          robot_log.scans_of(detections), {"gps": path.numbers}, landmarks,
                          "speed_mps,yaw_rate_radps", "range_m,identity")
     robot_log.report(path, motions, detections)
-    print(f"{len(landmarks)} nodes, ranges of {len(set(whole(ranges, 1)))} antenna(s), taken as at "
-          f"the pose: {arguments.output}")
+    print(f"{len(landmarks)} nodes, ranges of {len(antennas)} antenna(s), taken as at the pose: "
+          f"{arguments.output}")
 
 
 if __name__ == "__main__":

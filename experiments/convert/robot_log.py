@@ -2,6 +2,7 @@
 """Logs as robots write them: lines of words, rows of numbers with the line that each is from, and
 the repairs of experiments/RECORDED_DRIVES.md, each with a note that counts it.
 """
+import argparse
 import dataclasses
 import math
 import os
@@ -162,8 +163,8 @@ def detections_of(path, found, places, source, within=math.inf, separator=":"):
     identity = {one: k for k, one in enumerate(known)}  # ids may have more digits than a double
     for line, _, one, _ in found:
         if one not in identity:
-            raise ConversionError(f"{path}{separator}{line}: landmark {one} is not in {source} (if positions "
-                                  "are given, every landmark has one): add it there")
+            raise ConversionError(f"{path}{separator}{line}: landmark {one} is not in {source} (if "
+                                  "positions are given, every landmark has one): add it there")
     rows = Rows(path, np.array([(time, identity[one], *seen) for _, time, one, seen in found]),
                 np.array([line for line, *_ in found]),
                 [f"identities 0 to {len(known) - 1} are the landmarks {known[0]} to {known[-1]}"],
@@ -199,12 +200,20 @@ def report(*tables):
         print("; ".join([f"{rows.path}: {len(rows.numbers)} rows", *rows.notes]))
 
 
+def duration(text):
+    """The seconds in the text of an option."""
+    value = conversion.finite_number(text)
+    if value is None or value < 0:
+        raise argparse.ArgumentTypeError(f"'{text}' is no time from 0 s on")
+    return value
+
+
 def add_options(parser, is_sorted=True):
     """Adds the options that these scripts share."""
     parser.add_argument("-o", "--output", required=True, metavar="FOLDER",
                         help="the folder of the log, new or empty")
     if is_sorted:
-        parser.add_argument("--sort-within", type=float, default=SORT_WITHIN, metavar="SECONDS",
+        parser.add_argument("--sort-within", type=duration, default=SORT_WITHIN, metavar="SECONDS",
                             help="sort rows that are out of order by no more than this (default: "
                             "%(default)g)")
 

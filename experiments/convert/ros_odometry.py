@@ -7,7 +7,8 @@ echo -p` or from a converter of bags, to the odometry.csv of a drive.
     python3 ros_odometry.py odom.csv -o drive
 
 The columns are known by the header: the time (header.stamp, or else time), twist.linear.x and
-twist.angular.z. The other files of the drive are yours to write. See experiments/RECORDED_DRIVES.md.
+twist.angular.z. The other files of the drive are yours to write. See
+experiments/RECORDED_DRIVES.md.
 """
 import os
 import re
@@ -52,7 +53,8 @@ def without_left(rows):
         raise ConversionError(f"{rows.place(k)}: {left[k]:.3g} m/s to the side (a differential "
                               f"drive has none; up to {SIDEWAYS:g} m/s are ignored): say --vehicle "
                               "omnidirectional")
-    rows.notes += [f"speeds of up to {left[k]:.3g} m/s to the side, ignored"] * (left[k] > 0)
+    if left[k] > 0:
+        rows.notes.append(f"speeds of up to {left[k]:.3g} m/s to the side, ignored")
     return rows.numbers[:, [0, 1, 3]]
 
 

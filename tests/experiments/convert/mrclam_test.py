@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A small recording in the format of UTIAS MRCLAM, and the repairs of robots' logs."""
+import argparse
 import math
 import os
 import unittest
@@ -96,6 +97,10 @@ class Mrclam(Scripts):
         self.arguments["sort_within"] = 0.6
         self.assertIn("1 out of order by up to 0.5 s, sorted",
                       self.converted(mrclam, **self.arguments))
+        self.assertEqual(robot_log.duration("0.25"), 0.25)
+        for text in ("nan", "-1", "long"):
+            with self.assertRaises(argparse.ArgumentTypeError):
+                robot_log.duration(text)
 
     def test_names_file_and_line_of_a_mistake(self):
         for name, text, *pieces in (

@@ -98,6 +98,8 @@ class Plaza(Scripts):
                 (changed("TD", 1, 3, 0), "'TD': record 2", "range 0 m"),
                 (changed("TD", 1, 2, 9), "'TD': record 2", "landmark 9 is not in 'TL'"),
                 (changed("TD", 1, 2, 1.5), "'TD': record 2", "1.5 is no number of a node"),
+                (changed("TD", 1, 1, 2.5), "'TD': record 2", "2.5 is no number of a node"),
+                (changed("TL", 1, 0, 1e300), "'TL': record 2", "no number of a node"),
                 (changed("TL", 1, 0, 0), "'TL': record 2", "node 0 twice"),
                 ({"GT": self.variables["GT"] + [1e3, 0, 0, 0]}, "'DR': no motion after"),
                 ({"TD": self.variables["TD"] + [1e3, 0, 0, 0]}, "'TD': no range during")):
