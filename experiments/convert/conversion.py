@@ -185,29 +185,40 @@ def check_events(events, times, path):
 
 
 def write_rows(path, header, rows):
-    """Writes a CSV file: the header, then rows, which are sequences of numbers or ready texts."""
+    """Writes a CSV file: the header, then rows, which are sequences of numbers or ready texts. None
+    is an empty field."""
     with open(path, "x", encoding="utf-8") as file:
         file.write(header + "\n")
         for row in rows:
-            file.write((row if isinstance(row, str) else ",".join(map(number_text, row))) + "\n")
+            file.write((row if isinstance(row, str) else
+                        ",".join("" if one is None else number_text(one) for one in row)) + "\n")
 
 
-def write_log(folder, start, odometry, scans, references, landmarks=()):
-    """Writes a drive as the CSV log of experiments/RECORDED_DRIVES.md into a new or empty folder.
-    `start` is (time, x, y, heading), `odometry` has rows (time, speed, steer), `scans` are (time,
-    [(range, bearing), ...]), `references` {name: rows (time, x, y)}; seconds, metres, radians."""
+def check_new(folder):
+    """Raises ConversionError if a log cannot be written to the folder."""
     if os.path.isdir(folder) and os.listdir(folder):
         raise ConversionError(f"{folder}: not empty (other files would be read with the log): "
                               "name a new folder")
+
+
+def write_log(folder, start, odometry, scans, references, landmarks=(),
+              controls="speed_mps,steer_rad", components="range_m,bearing_rad"):
+    """Writes a drive as the CSV log of experiments/RECORDED_DRIVES.md into a new or empty folder.
+    `start` is (time, x, y, heading), `odometry` has rows (time, *controls), `scans` are (time,
+    [detection, ...]), a detection has the components, `references` {name: rows (time, x, y) or
+    (time, x, y, heading)}; seconds, metres, radians."""
+    check_new(folder)
     os.makedirs(folder, exist_ok=True)
     write_rows(os.path.join(folder, "start.csv"), "time_s,x_m,y_m,heading_rad", [start])
-    write_rows(os.path.join(folder, "odometry.csv"), "time_s,speed_mps,steer_rad", odometry)
+    write_rows(os.path.join(folder, "odometry.csv"), f"time_s,{controls}", odometry)
     detections = []
     for time, seen in scans:
-        detections += [(time, *one) for one in seen] or [number_text(time) + ",,"]
-    write_rows(os.path.join(folder, "detections.csv"), "time_s,range_m,bearing_rad", detections)
+        nothing = number_text(time) + "," * len(components.split(","))
+        detections += [(time, *one) for one in seen] or [nothing]
+    write_rows(os.path.join(folder, "detections.csv"), f"time_s,{components}", detections)
     for name, fixes in references.items():
-        write_rows(os.path.join(folder, f"reference_{name}.csv"), "time_s,x_m,y_m", fixes)
+        header = "time_s,x_m,y_m,heading_rad" if len(fixes[0]) == 4 else "time_s,x_m,y_m"
+        write_rows(os.path.join(folder, f"reference_{name}.csv"), header, fixes)
     if len(landmarks):
         write_rows(os.path.join(folder, "landmarks.csv"), "x_m,y_m", landmarks)
 

@@ -148,6 +148,17 @@ def pose_name(name):
 
 
 def seconds(words, places, unit, given):
+    """The times of times_in(), which must increase."""
+    times, notes = times_in(words, places, unit, given)
+    for k in range(1, len(times)):
+        if not times[k] > times[k - 1]:
+            raise ConversionError(f"{places[k]}: time {words[k]} is not later than that of the row "
+                                  "before (rows go forward in time; equal times may have lost "
+                                  "digits): sort them, or print all digits")
+    return times, notes
+
+
+def times_in(words, places, unit, given):
     """Exact times in seconds and a note if they were in another unit. `unit` is that of the header,
     `given` that of --time."""
     times = []
@@ -168,9 +179,4 @@ def seconds(words, places, unit, given):
     taken = given or unit or by_size
     why = "--time" if given else "the header" if unit else "their size"
     times = [time.scaleb(SECONDS_IN[taken]) for time in times]
-    for k in range(1, len(times)):
-        if not times[k] > times[k - 1]:
-            raise ConversionError(f"{places[k]}: time {words[k]} is not later than that of the row "
-                                  "before (rows go forward in time; equal times may have lost "
-                                  "digits): sort them, or print all digits")
     return times, [] if taken == "s" else [f"times are in {taken} by {why}, written in s"]
