@@ -180,7 +180,7 @@ std::vector<Section::Block> leads_of(const StudyAnalysis& study) {
     if (found == nullptr) continue;
     const double ratio = found->ratio;
     leads.emplace_back(Section::Lead{
-        cell.label + ": innovations are " + whiteness_in_words(*found) + "; NIS per component " +
+        cell.label + ", innovations: " + whiteness_in_words(*found) + "; NIS per component " +
         with_interval(ratio, found->verdict.ratio()) + ", where 1 is right."});
   }
   return leads;

@@ -274,11 +274,6 @@ std::vector<ReferencePath> read_references(const fs::path& folder) {
     }
     references.push_back(read_reference_csv(entry.path(), name));
   }
-  if (references.empty()) {
-    throw StudyError(folder.string() +
-                     ": no reference (a drive is judged by one): add the fixes of a GPS, or "
-                     "another measurement of the path");
-  }
   std::ranges::sort(references, is_read_before, &ReferencePath::name);
   return references;
 }

@@ -348,7 +348,7 @@ TEST_F(Judge, InnovationsAloneNeedNoTruth) {
   const std::vector<std::string> files = {"innovation_0.csv", "innovation_1.csv"};
   const Called called = judge(files, {"--innovations", "-o", "mine.h5"});
   EXPECT_EQ(called.code, 0) << called.err;
-  EXPECT_THAT(called.out, AllOf(HasSubstr("innovation: innovations are white, optimistic"),
+  EXPECT_THAT(called.out, AllOf(HasSubstr("innovation, innovations: white, optimistic"),
                                 HasSubstr("2 runs, 100 scans each")));
   EXPECT_EQ(call({"gate", "mine.h5"}).code, 2);
   EXPECT_EQ(call({"report", "mine.h5", "-o", "report"}).code, 0);
