@@ -84,7 +84,9 @@ class Judgement:
         The result file, which `open` reads and `montecarta report` draws.
     """
 
-    def __init__(self, path: str, notes: Sequence[str] = (), within: Optional[float] = None):
+    def __init__(self, path: str, notes: Sequence[str] = (), within: Optional[float] = None,
+                 folder: Optional[tempfile.TemporaryDirectory] = None):
+        self._folder = folder  # which is removed when nobody holds this judgement any more
         margin = [] if within is None else ["--within", str(within)]
         self._json = json.loads(_call("gate", path, "--json", *margin).stdout)
         self.path, self.notes, self._margin = path, list(notes), margin
@@ -117,9 +119,15 @@ class Judgement:
 
     def raise_if_inconsistent(self) -> None:
         """Raises Inconsistent, an AssertionError, with the sentence if the estimator is shown not
-        to be consistent within the margin, or if nothing could be judged. Too few runs to decide
-        are no error."""
+        to be consistent within the margin, optimistic or conservative, or if nothing could be
+        judged. Too few runs to decide are no error."""
         if self._json["gate"] == "inconsistent" or self.answer == "untested":
+            raise Inconsistent(self.sentence)
+
+    def raise_unless_consistent(self) -> None:
+        """Raises Inconsistent with the sentence unless the estimator is shown to be consistent
+        within the margin: also if too few runs were judged to decide."""
+        if self._json["gate"] != "consistent":
             raise Inconsistent(self.sentence)
 
     def __repr__(self) -> str:
@@ -154,7 +162,7 @@ def judge(errors, covariances, times=None, nis=None, names=None, within: float =
     within : float
         Ratios of squared errors from 1 / within to within are consistent.
     path : str, optional
-        Where to keep the result file; by default a temporary one.
+        Where to keep the result file; by default it goes with the judgement.
 
     Returns
     -------
@@ -228,12 +236,16 @@ def _judge(states, covariances, times, nis, nis_dof, names, within, path, option
                 file[name] = values
             if names is not None:
                 file.attrs["names"] = ",".join(names)
-        path = path or os.path.join(tempfile.mkdtemp(prefix="montecarta-"), "result.h5")
-        done = _call("judge", given, "-o", os.fspath(path), "--force", "--within", str(within),
-                     *options)
+        kept = None if path else tempfile.TemporaryDirectory(prefix="montecarta-")
+        path = path or os.path.join(kept.name, "result.h5")
+        try:
+            done = _call("judge", given, "-o", os.fspath(path), "--force", "--cell", "estimator",
+                         "--within", str(within), *options)
+        except ValueError as error:
+            raise ValueError(str(error).replace(given + ": ", "")) from None
     notes = [line.removeprefix("montecarta: note: ") for line in done.stderr.splitlines()
              if line.startswith("montecarta: note: ")]
-    return Judgement(os.fspath(path), notes, within)
+    return Judgement(os.fspath(path), notes, within, kept)
 
 
 def run(study: str, output: str, settings: Optional[dict] = None) -> Results:

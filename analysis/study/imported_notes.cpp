@@ -11,11 +11,12 @@
 namespace montecarta::analysis {
 namespace {
 
-std::string sentence_on(const std::string& convention) {
+std::string sentence_on(const std::string& state, const std::string& convention) {
   if (convention == "body") return "in the frame of the estimate";
   if (convention == "right-invariant")
     return "right-invariant: the logarithm of mean times inverse truth";
-  return "estimate minus truth in the frame of the map";
+  return state == "vector" ? "estimate minus truth"
+                           : "estimate minus truth in the frame of the map";
 }
 
 }  // namespace
@@ -29,10 +30,11 @@ std::string components_text(const StudyAnalysis& study) {
 std::vector<std::string> imported_notes(const StudyAnalysis& study) {
   if (!study.imported.is_imported()) return {};
   const std::string& convention = study.imported.convention;
-  std::vector<std::string> notes = {prose("components", "imported",
-                                          {{"convention", convention},
-                                           {"meaning", sentence_on(convention)},
-                                           {"components", components_text(study)}})};
+  std::vector<std::string> notes = {
+      prose("components", "imported",
+            {{"convention", convention},
+             {"meaning", sentence_on(study.imported.state, convention)},
+             {"components", components_text(study)}})};
   for (const CellAnalysis& cell : study.cells) {
     const std::string hint = in_words(cell.get<ConventionHint>(), cell.label, convention);
     if (!hint.empty()) notes.push_back(prose("components", "hint", {{"hint", hint}}));

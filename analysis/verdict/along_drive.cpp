@@ -92,7 +92,7 @@ void AlongDrive::merge(AlongDrive& next) {
 }
 
 void AlongDrive::forget_if_enough() {
-  if (runs_ < kFewestJudgedRuns) return;
+  if (runs_ < kFewestRunsOfAPlan) return;
   whitened_.clear();
   standardised_.clear();
 }
@@ -108,12 +108,12 @@ std::vector<MemberTest> AlongDrive::tests(std::span<const std::string> component
   return all;
 }
 
-double AlongDrive::length_that_decides(double level, double within) const {
+double AlongDrive::runs_that_decide(double level, double within) const {
   const std::vector<std::size_t> known = known_components(whitened_, dimension_);
   const std::vector<VectorSeries> drives = drives_of(whitened_, dimension_, known);
-  if (drives.empty() || ratio_of({drives.front()}) < kLeastRatio) return kNaN;
-  const CorrelatedAverage found = correlated_average(std::span(drives).first(1), level);
-  return samples_that_decide(known.size(), level, within) / found.effective_samples;
+  if (drives.empty() || ratio_of(drives) < kLeastRatio) return kNaN;
+  return static_cast<double>(drives.size()) * samples_that_decide(known.size(), level, within) /
+         correlated_average(drives, level).effective_samples;
 }
 
 }  // namespace montecarta::analysis

@@ -12,19 +12,20 @@
 
 namespace montecarta::analysis {
 
-/// Keeps the errors of a study of fewer than kFewestJudgedRuns runs, and tests them along their
-/// drives (STATISTICS 20), which show as much as the errors forget.
+/// Keeps the errors of a study of fewer than kFewestRunsOfAPlan runs, and tests them along their
+/// drives (STATISTICS 20), which show as much as the errors forget. So few runs hardly show how
+/// much runs differ.
 class AlongDrive {
  public:
   void add(const WhitenedRun& run);
   void merge(AlongDrive& next);
-  /// Number of runs with errors; those of kFewestJudgedRuns runs and more are not kept.
+  /// Number of runs with errors; those of kFewestRunsOfAPlan runs and more are not kept.
   std::size_t runs() const { return runs_; }
   /// The families of size and, of several components, of components; empty without errors.
   std::vector<MemberTest> tests(std::span<const std::string> components) const;
-  /// Number of times that a drive must be as long as these, with errors of the same memory, so that
-  /// the size is shown to be within the margin or beyond it. NaN without errors; may be infinite.
-  double length_that_decides(double level, double within) const;
+  /// Number of runs like these, whose errors have the same memory, that show the size to be within
+  /// the margin or beyond it. NaN without errors; may be infinite.
+  double runs_that_decide(double level, double within) const;
 
  private:
   void forget_if_enough();

@@ -131,10 +131,10 @@ std::string in_words(const ConventionHint& hint, const std::string& cell, const 
     words += said_fits ? ": " : " as well: ";
     words += comma_joined(others);
   } else {
-    words += "The same covariances would not have been rejected as " + comma_joined(fitting);
-    if (!others.empty()) words += ", but as " + comma_joined(others);
-    words += said_fits ? ": this study cannot tell them apart"
-                       : ": were they meant so? If not, this is by chance, and no verdict";
+    words += "The same covariances would pass as " + comma_joined(fitting);
+    if (!others.empty()) words += ", and be rejected as " + comma_joined(others);
+    words += said_fits ? ": this study cannot tell those that pass apart"
+                       : ": are they of another error than was said? If not, they pass by chance";
   }
   return mistakes.empty() ? words : words + ". " + mistakes;
 }

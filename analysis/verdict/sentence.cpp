@@ -389,11 +389,14 @@ std::string within_words(const Verdict& verdict) {
 
 /// Text of the further runs needed: "about 130 more runs decide".
 std::string more_runs_words(const Verdict& verdict) {
-  if (complete_runs(verdict) < kFewestRunsOfAPlan) {
-    const std::string runs = "take at least " + std::to_string(kFewestRunsOfAPlan) + " runs";
-    if (!(verdict.drive_that_decides < 1e6)) return runs;
-    return runs + ", or a drive " + readable(std::ceil(verdict.drive_that_decides)) +
-           " times as long";
+  const double runs = static_cast<double>(complete_runs(verdict));
+  if (runs < kFewestRunsOfAPlan) {
+    const double more = std::ceil(verdict.runs_that_decide - runs);
+    if (!(more < 1e6)) {
+      return "take at least " + std::to_string(kFewestRunsOfAPlan) + " runs";
+    }
+    return "at least " + readable(std::max(more, 1.0)) + " more runs like " +
+           (runs == 1.0 ? "it" : "them") + " decide";
   }
   if (!verdict.more_runs) return "many more runs decide";
   return "about " + std::to_string(*verdict.more_runs) + " more runs decide";
@@ -466,12 +469,38 @@ std::string consistent_words(const Verdict& verdict) {
                         : tails);
 }
 
+/// Text of the part that reaches farthest beyond the margin, if the average does not: " in heading
+/// from 10 s to 20 s, though on average it is".
+std::string open_part(const Verdict& verdict) {
+  const FamilyTest* size = verdict.find(Family::size);
+  if (size == nullptr || !is_within_margin(Family::size, size->members.front(), verdict.within)) {
+    return "";
+  }
+  const Member* farthest = nullptr;
+  double most = 0.0;
+  for (const FamilyTest& test : verdict.families) {
+    if (!is_ratio(test.family) || test.family == Family::scan) continue;
+    for (const Member& member : test.members) {
+      const Interval& reach = member.interval;
+      const double beyond = std::max(std::log(reach.upper), -std::log(reach.lower));
+      if (is_within_margin(test.family, member, verdict.within) || !(beyond > most)) continue;
+      most = beyond;
+      farthest = &member;
+    }
+  }
+  const std::string place = farthest == nullptr ? "" : name_of(*farthest);
+  if (place.empty()) return "";
+  const bool is_stretch = farthest->name.empty();
+  return std::string(is_stretch ? " from " : " in ") + place + ", as it is on average";
+}
+
 std::string undecided_words(const Verdict& verdict) {
   const std::uint64_t runs = complete_runs(verdict);
   const std::string words = "undecided: " + std::to_string(runs) +
                             (runs == 1 ? " run does" : " runs do") + " not show whether it is " +
                             within_words(verdict);
-  return joined({words, few_runs_words(verdict), more_runs_words(verdict), tail_words(verdict)});
+  return joined({words + open_part(verdict), few_runs_words(verdict), more_runs_words(verdict),
+                 tail_words(verdict)});
 }
 
 /// Text of the findings of the tests.

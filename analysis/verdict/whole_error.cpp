@@ -325,18 +325,31 @@ std::vector<FamilyTest> WholeError::families(double level, const ErrorNames& nam
     if (dimension_ > 1) add_tests(component_[k], names.components[k], names, squares, all);
     add_tests(bias_[k], names.components[k], names, mean, all);
   }
+  judge_along_drives(names, all);
   add_correlation_tests(names, all);
   groups_.add_tests(all);
   add_largest_test(names, all);
   return judge_tests(std::move(all), level);
 }
 
+/// Puts the tests along the drives in place of those of size and components, if the errors of all
+/// runs were kept.
+void WholeError::judge_along_drives(const ErrorNames& names, std::vector<MemberTest>& all) const {
+  if (along_.runs() >= kFewestRunsOfAPlan || along_.runs() != nees_.ratios().n) return;
+  std::vector<MemberTest> tests = along_.tests(names.components);
+  if (tests.empty()) return;
+  std::erase_if(all, [](const MemberTest& test) {
+    return test.family == Family::size || test.family == Family::component;
+  });
+  std::ranges::move(tests, std::back_inserter(all));
+}
+
 std::optional<Side> WholeError::refused_by_bets(double margin, double level) const {
   return refused_side(bets_, margin, level);
 }
 
-double WholeError::drive_that_decides(double level, double within) const {
-  return nees_.ratios().n < kFewestJudgedRuns ? along_.length_that_decides(level, within) : kNaN;
+double WholeError::runs_that_decide(double level, double within) const {
+  return along_.runs() < kFewestRunsOfAPlan ? along_.runs_that_decide(level, within) : kNaN;
 }
 
 BesideTests WholeError::beside_tests(const ErrorNames& names) const {

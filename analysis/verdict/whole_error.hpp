@@ -57,15 +57,16 @@ class WholeError {
 
   /// Adds one run with its NEES {scan}, which is NaN where it is not judged.
   void add(const WhitenedRun& run, std::span<const double> nees);
-  /// The families that apply, judged together at `level`. Those of fewer than kFewestJudgedRuns
-  /// runs are the scans, and size and components along the drives.
+  /// The families that apply, judged together at `level`. Size and components of fewer than
+  /// kFewestRunsOfAPlan runs are judged along the drives; fewer than kFewestJudgedRuns runs have no
+  /// other families but the scans.
   std::vector<FamilyTest> families(double level, const ErrorNames& names) const;
   /// The side of the margin on which bets on the ratios of runs refuse the filter (STATISTICS 18).
   std::optional<Side> refused_by_bets(double margin, double level) const;
   /// Findings that are in no test.
   BesideTests beside_tests(const ErrorNames& names) const;
   /// See AlongDrive; NaN if there are enough runs.
-  double drive_that_decides(double level, double within) const;
+  double runs_that_decide(double level, double within) const;
   static constexpr auto parts() {
     using Sums = WholeError;
     return std::tuple(
@@ -130,6 +131,7 @@ class WholeError {
   double product_of_biases(std::size_t a, std::size_t b, std::size_t stretch) const;
   void add_correlation_tests(const ErrorNames& names, std::vector<MemberTest>& all) const;
   void add_largest_test(const ErrorNames& names, std::vector<MemberTest>& all) const;
+  void judge_along_drives(const ErrorNames& names, std::vector<MemberTest>& all) const;
 
   std::size_t dimension_ = 0;
   std::vector<std::size_t> ends_;  ///< {stretch} 1 + its last scan

@@ -66,11 +66,16 @@ std::unique_ptr<EstimateSource> source_of(const Arguments& arguments,
   const std::vector<std::string> truths = arguments.texts("truth");
   if (operands.size() == 1 && has_arrays(operands.front())) {
     if (truths.empty()) {
+      const std::string stem = std::filesystem::path(operands.front()).stem().string();
       return std::make_unique<EstimateArrays>(operands.front(),
-                                              arguments.text("cell").value_or("estimate"));
+                                              arguments.text("cell").value_or(stem));
     }
     throw StudyError("--truth: not beside " + operands.front() +
                      " (arrays have their truth in the same file): leave it out");
+  }
+  if (operands.size() > 1 && has_arrays(operands.front())) {
+    throw StudyError(operands[1] + ": one file of arrays is judged at a time (it has all runs): " +
+                     "judge the files apart");
   }
   if (arguments.has("innovations")) {
     if (truths.empty()) {

@@ -4,6 +4,7 @@
 #include "engine/errors.hpp"
 #include "engine/records/fingerprint.hpp"
 #include "experiments/files/files.hpp"
+#include "experiments/judging/run_files.hpp"
 #include "experiments/judging/state_columns.hpp"
 #include "experiments/text/words.hpp"
 
@@ -62,6 +63,7 @@ EstimateArrays::EstimateArrays(std::filesystem::path path, std::string cell)
       time_(find("time", 2)),
       nis_(find("nis", 2)),
       nis_dof_(find("nis_dof", 2)) {
+  check_label(cells_.front());
   require_order();
   const auto runs = states_.shape[0], scans = states_.shape[1], d = covariance_.shape[3];
   require_axes(covariance_, {runs, scans, d, d}, "{run, scan, d, d}");
@@ -103,9 +105,9 @@ void EstimateArrays::refuse(const std::string& name, const std::string& reason) 
 /// Opens an array of `axes` axes, of which that of runs may be left out if all runs share it.
 EstimateArrays::Array EstimateArrays::open(const std::string& name, std::size_t axes) const {
   if (!h5::has(file_, name)) {
-    refuse(name,
-           "is missing (arrays are error, or mean and truth, with covariance): write it, as "
-           "experiments/JUDGING_ESTIMATES.md shows");
+    refuse(name, "is missing (arrays are error, or mean and truth, with covariance; the file has " +
+                     joined(h5::members(file_)) +
+                     "): write it, as experiments/JUDGING_ESTIMATES.md shows");
   }
   if (h5::is_group(file_, name)) refuse(name, "is a group (an array is needed): write an array");
   Array array{h5::open_dataset(file_, name), {}, name};
@@ -131,7 +133,8 @@ void EstimateArrays::require_axes(const Array& array, const h5::Shape& wanted,
   const std::size_t first = array.has_runs ? 0 : 1;
   if (std::ranges::equal(array.shape, std::span(wanted).subspan(first))) return;
   refuse(array.name, "has the axes " + axes_text(array.shape) + " (" + std::string(axes) + " is " +
-                         axes_text(wanted) + "): write them in this order");
+                         axes_text(wanted) +
+                         "): give all arrays the same runs, scans and components");
 }
 
 /// The shape of the state by the attribute `names`; without it the columns are e0, e1, ...

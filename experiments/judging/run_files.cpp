@@ -52,9 +52,11 @@ using FilesByRun = std::map<RunKey, fs::path>;
 
 void add_run(const NumberedFile& file, FilesByRun& files) {
   if (file.run.empty()) {
-    throw StudyError(file.path.string() +
-                     ": has no run number (neither the file nor a folder is named after one): " +
-                     "name it or its folder e.g. run_0007");
+    throw StudyError(
+        file.path.string() +
+        ": has no run number (neither the file nor a folder is named after one; a number "
+        "behind other letters belongs to the name): name it or its folder e.g. "
+        "run_0007 or ekf_7");
   }
   const auto [there, is_new] = files.try_emplace(file.run, file.path);
   if (is_new) return;
@@ -80,16 +82,6 @@ std::string label_of(const std::vector<std::string>& rest,
   const std::vector<std::string> own(rest.begin() + static_cast<std::ptrdiff_t>(first),
                                      rest.end() - static_cast<std::ptrdiff_t>(last));
   return own.empty() ? "estimate" : joined(own, "_");
-}
-
-void check_label(const std::string& label) {
-  const bool is_good = std::ranges::all_of(label, [](unsigned char c) {
-    return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '.';
-  });
-  if (is_good && !label.empty() && label.size() <= 100 && label != "." && label != "..") return;
-  throw StudyError("'" + excerpt(label) +
-                   "' cannot label a cell (up to 100 letters, digits, _ - . can): rename the "
-                   "folder, or give --cell NAME");
 }
 
 std::map<std::string, FilesByRun> cells_of(const std::vector<NumberedFile>& files,
@@ -180,6 +172,16 @@ std::vector<std::string> names_of(const FilesByRun& runs) {
 }
 
 }  // namespace
+
+void check_label(const std::string& label) {
+  const bool is_good = std::ranges::all_of(label, [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '.';
+  });
+  if (is_good && !label.empty() && label.size() <= 100 && label != "." && label != "..") return;
+  throw StudyError("'" + excerpt(label) +
+                   "' cannot label a cell (up to 100 letters, digits, _ - . can): rename the "
+                   "folder, or give --cell NAME");
+}
 
 JudgedFiles pair_files(const std::vector<std::string>& estimates,
                        const std::vector<std::string>& truths,

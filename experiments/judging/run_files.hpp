@@ -33,6 +33,9 @@ JudgedFiles pair_files(const std::vector<std::string>& estimates,
                        const std::vector<std::string>& truths,
                        const std::optional<std::string>& cell);
 
+/// Throws StudyError if a cell cannot be called `label`.
+void check_label(const std::string& label);
+
 /// A sentence on runs that are numbered anew; empty if they are not.
 std::string note_on_names(const JudgedFiles& files);
 

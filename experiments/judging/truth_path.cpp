@@ -41,7 +41,8 @@ TruthPath::TruthPath(StateRows rows, std::filesystem::path path, const TimeMatch
     : rows_(std::move(rows)),
       path_(std::move(path)),
       match_(match),
-      longest_gap_(match.longest_gap.value_or(kUsualGaps * usual_spacing(rows_.time))) {}
+      usual_gap_(kUsualGaps * usual_spacing(rows_.time)),
+      longest_gap_(match.longest_gap.value_or(usual_gap_)) {}
 
 bool TruthPath::goes_on_at(double time) const {
   return rows_.time.back() >= time - match_.tolerance;
@@ -89,6 +90,7 @@ std::optional<Eigen::VectorXd> TruthPath::interpolated(double time, const std::s
     }
     return std::nullopt;
   }
+  if (to - from > usual_gap_) use.longest_crossed = std::max(use.longest_crossed, to - from);
   return between(rows_.shape, rows_.state[right - 1], rows_.state[right],
                  (time - from) / (to - from));
 }
@@ -136,6 +138,10 @@ std::vector<std::string> TruthUse::notes() const {
     all.push_back(std::to_string(in_gaps) +
                   " estimates lie in gaps of the truth and are missing (" + first_gap +
                   "): --longest-gap SECONDS sets what is interpolated");
+  }
+  if (longest_crossed > 0.0) {
+    all.push_back("the truth was interpolated across a gap of " + to_text(longest_crossed) +
+                  " s, far longer than usual: its own error there counts as the estimate's");
   }
   if (outside > 0) {
     all.push_back(std::to_string(outside) + " estimates lie before or after the truth and are " +

@@ -29,6 +29,7 @@ struct TruthUse {
   std::string of_mismatch = {};    ///< the estimate's file and time
   std::uint64_t in_gaps = 0;       ///< number of estimates left out in gaps of a truth
   std::string first_gap = {};      ///< the first such gap: file and times
+  double longest_crossed = 0.0;    ///< [s] longest gap that was interpolated beyond the usual
   std::uint64_t outside = 0;       ///< number of estimates left out before or after a truth
   std::string first_outside = {};  ///< the first such estimate: file and time
 
@@ -60,7 +61,7 @@ class TruthPath {
   StateRows rows_;
   std::filesystem::path path_;
   TimeMatch match_;
-  double longest_gap_;
+  double usual_gap_, longest_gap_;
 };
 
 }  // namespace montecarta::experiments

@@ -44,7 +44,11 @@ class JudgeFromPython(unittest.TestCase):
         right = montecarta.judge(*kalman_filter(1500, 40, 1.0), names=["x_m", "v_mps"])
         self.assertEqual(right.answer, "consistent", right)
         self.assertTrue(right.ratio.lower < 1 < right.ratio.upper)
-        right.raise_if_inconsistent()
+        right.raise_unless_consistent()
+        few = montecarta.judge(*kalman_filter(12, 40, 1.0))
+        few.raise_if_inconsistent()
+        with self.assertRaisesRegex(AssertionError, "undecided"):
+            few.raise_unless_consistent()
         wrong = montecarta.judge(*kalman_filter(300, 40, 0.8))
         self.assertEqual(wrong.answer, "optimistic", wrong)
         self.assertAlmostEqual(wrong.ratio.estimate, 1.25, delta=0.06)
@@ -57,7 +61,7 @@ class JudgeFromPython(unittest.TestCase):
             path = os.path.join(folder, "result.h5")
             found = montecarta.judge(errors, covariances, path=path, names=["x_m", "v_mps"])
             cells = found.tables()["cells"]
-            self.assertEqual(montecarta.open(path).labels, ("estimate",))
+            self.assertEqual(montecarta.open(path).labels, ("estimator",))
         self.assertAlmostEqual(cells["nees_ratio"][0], found.ratio.estimate, places=4)
         families = found.families
         self.assertEqual(list(families.query("family == 'component'").member), ["x", "v"])
@@ -87,7 +91,7 @@ class JudgeFromPython(unittest.TestCase):
 
     def test_refuses_arrays_that_do_not_fit(self):
         errors, covariances = kalman_filter(5, 6, 1.0)
-        with self.assertRaisesRegex(ValueError, "covariance has the axes"):
+        with self.assertRaisesRegex(ValueError, "^covariance has the axes"):
             montecarta.judge(errors, covariances[:, :-1])
         with self.assertRaisesRegex(ValueError, "is not later"):
             montecarta.judge(errors, covariances, times=np.zeros(6))
