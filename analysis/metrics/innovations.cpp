@@ -177,7 +177,11 @@ std::vector<Section::Block> leads_of(const StudyAnalysis& study) {
   if (study.has_truth || !study.references.empty()) return leads;
   for (const CellAnalysis& cell : study.cells) {
     const Innovations* found = cell.find<Innovations>();
-    if (found == nullptr) continue;
+    if (found == nullptr) {
+      leads.emplace_back(Section::Lead{cell.label + ", innovations: not judged, since none has a "
+                                                    "covariance that is positive definite."});
+      continue;
+    }
     const double ratio = found->ratio;
     leads.emplace_back(Section::Lead{
         cell.label + ", innovations: " + whiteness_in_words(*found) + "; NIS per component " +

@@ -43,7 +43,6 @@ class VerdictOverRuns final : public MergedSums<VerdictOverRuns> {
                                    .share_of_runs = criteria_->share_of_runs};
     cell.verdict =
         judge(*sums_, {criteria_->components, criteria_->times}, analysis, ended, cell.complete);
-    cell.verdict.runs_that_decide = sums_->runs_that_decide(level, criteria_->within);
     const NeesSeries& series = cell.nees.front().series;
     cell.verdict.samples = series.samples;
     cell.verdict.unusable = series.unusable;

@@ -49,8 +49,9 @@ def program() -> str:
 def _call(*words: str) -> subprocess.CompletedProcess:
     """Calls the program. Raises ValueError with its message if it refuses its input."""
     done = subprocess.run([program(), *words], capture_output=True, text=True, check=False)
-    if done.returncode in (1, 2):
-        raise ValueError(done.stderr.strip().removeprefix("montecarta: "))
+    if done.returncode not in (0, 4, 5):  # the answers of gate
+        raise ValueError(done.stderr.strip().removeprefix("montecarta: ") or
+                         f"{program()} ended with code {done.returncode} and said nothing")
     return done
 
 
@@ -206,36 +207,47 @@ def judge_estimates(estimates, truths, covariances, error: Optional[str] = None,
 
     Other parameters, what is returned and what is raised are those of `judge`.
     """
-    truths = np.asarray(truths, float)
-    if np.ndim(estimates) == 2:
-        truths = truths.reshape(-1, *np.shape(estimates))
+    estimates, truths = _numbers(estimates), _numbers(truths)
+    if estimates.ndim == truths.ndim == 2 and estimates.shape != truths.shape:
+        raise ValueError(f"truths have the shape {truths.shape}, estimates {estimates.shape}: give "
+                         "both the same scans and columns")
     return _judge({"mean": estimates, "truth": truths}, covariances, times, nis, nis_dof, names,
                   within, path, [] if error is None else ["--error", error])
+
+
+def _numbers(values) -> np.ndarray:
+    """An array of floats; masked numbers are NaN."""
+    if np.ma.isMaskedArray(values):
+        values = np.ma.filled(np.ma.asarray(values, float), np.nan)
+    return np.asarray(values, float)
 
 
 def _judge(states, covariances, times, nis, nis_dof, names, within, path, options=()):
     import h5py
 
-    arrays = {name: np.asarray(values, float) for name, values in states.items()}
-    arrays["covariance"] = np.asarray(covariances, float)
+    arrays = {name: _numbers(values) for name, values in states.items()}
+    arrays["covariance"] = _numbers(covariances)
     if arrays["covariance"].ndim == 3:  # one run
         arrays |= {name: values[np.newaxis] for name, values in arrays.items()
                    if values.ndim == (3 if name == "covariance" else 2)}
     of_scans = next(iter(arrays.values())).shape[:2]
     if times is not None:
-        arrays["time"] = np.asarray(times, float)
+        arrays["time"] = _numbers(times)
     if nis is not None:
-        arrays["nis"] = np.reshape(np.asarray(nis, float), of_scans)
+        arrays["nis"] = _numbers(nis) if np.ndim(nis) == 2 else _numbers(nis)[np.newaxis]
+        if arrays["nis"].shape != of_scans:
+            raise ValueError(f"nis has the shape {np.shape(nis)} (runs and scans are {of_scans}): "
+                             "give one number for each scan")
         if nis_dof is None:
             raise ValueError("nis needs nis_dof, the number of components of each: give it")
-        arrays["nis_dof"] = np.broadcast_to(np.asarray(nis_dof, float), of_scans)
+        arrays["nis_dof"] = np.broadcast_to(_numbers(nis_dof), of_scans)
     with tempfile.TemporaryDirectory() as folder:
         given = os.path.join(folder, "estimates.h5")
         with h5py.File(given, "w") as file:
             for name, values in arrays.items():
                 file[name] = values
             if names is not None:
-                file.attrs["names"] = ",".join(names)
+                file.attrs["names"] = ",".join(map(str, names))
         kept = None if path else tempfile.TemporaryDirectory(prefix="montecarta-")
         path = path or os.path.join(kept.name, "result.h5")
         try:

@@ -108,12 +108,4 @@ std::vector<MemberTest> AlongDrive::tests(std::span<const std::string> component
   return all;
 }
 
-double AlongDrive::runs_that_decide(double level, double within) const {
-  const std::vector<std::size_t> known = known_components(whitened_, dimension_);
-  const std::vector<VectorSeries> drives = drives_of(whitened_, dimension_, known);
-  if (drives.empty() || ratio_of(drives) < kLeastRatio) return kNaN;
-  return static_cast<double>(drives.size()) * samples_that_decide(known.size(), level, within) /
-         correlated_average(drives, level).effective_samples;
-}
-
 }  // namespace montecarta::analysis

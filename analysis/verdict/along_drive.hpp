@@ -23,9 +23,6 @@ class AlongDrive {
   std::size_t runs() const { return runs_; }
   /// The families of size and, of several components, of components; empty without errors.
   std::vector<MemberTest> tests(std::span<const std::string> components) const;
-  /// Number of runs like these, whose errors have the same memory, that show the size to be within
-  /// the margin or beyond it. NaN without errors; may be infinite.
-  double runs_that_decide(double level, double within) const;
 
  private:
   void forget_if_enough();

@@ -389,14 +389,8 @@ std::string within_words(const Verdict& verdict) {
 
 /// Text of the further runs needed: "about 130 more runs decide".
 std::string more_runs_words(const Verdict& verdict) {
-  const double runs = static_cast<double>(complete_runs(verdict));
-  if (runs < kFewestRunsOfAPlan) {
-    const double more = std::ceil(verdict.runs_that_decide - runs);
-    if (!(more < 1e6)) {
-      return "take at least " + std::to_string(kFewestRunsOfAPlan) + " runs";
-    }
-    return "at least " + readable(std::max(more, 1.0)) + " more runs like " +
-           (runs == 1.0 ? "it" : "them") + " decide";
+  if (complete_runs(verdict) < kFewestRunsOfAPlan) {
+    return "take at least " + std::to_string(kFewestRunsOfAPlan) + " runs";
   }
   if (!verdict.more_runs) return "many more runs decide";
   return "about " + std::to_string(*verdict.more_runs) + " more runs decide";

@@ -49,7 +49,7 @@ inline constexpr std::size_t kFewestJudgedRuns = 3;
 
 /// The fewest runs that show how much runs differ: a standard deviation of ten values is known to a
 /// quarter. Of fewer, size and components are judged along the drives, and the number of further
-/// runs is predicted from there.
+/// runs is not predicted.
 inline constexpr std::size_t kFewestRunsOfAPlan = 10;
 
 /// Returns whether members of a family are ratios of squared errors to the expected ones; else they
@@ -161,9 +161,6 @@ struct Verdict {
   std::uint64_t unusable = 0;  ///< number of samples without a finite error or a covariance matrix
   std::uint64_t missing = 0;   ///< number of scans of complete runs without an estimate
   std::optional<std::uint64_t> more_runs = {};  ///< number of further runs that decide, if known
-  /// Number of runs like these that decide, in a study of fewer than kFewestRunsOfAPlan runs;
-  /// infinite if none would, NaN in others.
-  double runs_that_decide = kNaN;
   /// Whether a deviation is shown to be beyond the margin, at `level` for all tests together: only
   /// then is the filter refused. A deviation within the margin is called slight.
   bool is_refused = false;

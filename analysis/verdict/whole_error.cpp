@@ -348,10 +348,6 @@ std::optional<Side> WholeError::refused_by_bets(double margin, double level) con
   return refused_side(bets_, margin, level);
 }
 
-double WholeError::runs_that_decide(double level, double within) const {
-  return along_.runs() < kFewestRunsOfAPlan ? along_.runs_that_decide(level, within) : kNaN;
-}
-
 BesideTests WholeError::beside_tests(const ErrorNames& names) const {
   BesideTests found;
   for (std::size_t k = 0; k < exact_.size(); ++k) {

@@ -65,8 +65,6 @@ class WholeError {
   std::optional<Side> refused_by_bets(double margin, double level) const;
   /// Findings that are in no test.
   BesideTests beside_tests(const ErrorNames& names) const;
-  /// See AlongDrive; NaN if there are enough runs.
-  double runs_that_decide(double level, double within) const;
   static constexpr auto parts() {
     using Sums = WholeError;
     return std::tuple(

@@ -301,6 +301,38 @@ std::string text(const Handle& object, const std::string& name) {
   return *std::move(value);
 }
 
+bool has_attribute(const Handle& object, const std::string& name) {
+  return H5Aexists(object.id(), name.c_str()) > 0;
+}
+
+std::vector<std::string> find_texts(const Handle& object, const std::string& name) {
+  if (!has_attribute(object, name)) return {};
+  const Handle attribute = open_attribute(object, name);
+  const Handle type(H5Aget_type(attribute.id()));
+  const Handle space(H5Aget_space(attribute.id()));
+  const hssize_t count = H5Sget_simple_extent_npoints(space.id());
+  if (H5Tget_class(type.id()) != H5T_STRING || count < 1) return {};
+  if (count == 1) return {value_of(attribute).value_or("")};
+  std::vector<std::string> found;
+  if (H5Tis_variable_str(type.id()) > 0) {
+    require_in_file(std::array{static_cast<hsize_t>(count)}, sizeof(char*), object, name);
+    std::vector<char*> values(static_cast<std::size_t>(count));
+    if (H5Aread(attribute.id(), text_type().id(), values.data()) < 0) return {};
+    for (const char* value : values) found.emplace_back(value == nullptr ? "" : value);
+    H5Dvlen_reclaim(text_type().id(), space.id(), H5P_DEFAULT, values.data());
+    return found;
+  }
+  const std::size_t width = H5Tget_size(type.id());
+  require_in_file(std::array{static_cast<hsize_t>(count)}, width, object, name);
+  std::string values(width * static_cast<std::size_t>(count), '\0');
+  if (H5Aread(attribute.id(), type.id(), values.data()) < 0) return {};
+  for (std::size_t k = 0; k < values.size(); k += width) {
+    const std::string value = values.substr(k, width);
+    found.push_back(value.substr(0, value.find('\0')));
+  }
+  return found;
+}
+
 std::vector<Text> texts(const Handle& object) {
   std::vector<Text> found;
   for (const std::string& name : attribute_names(object)) {

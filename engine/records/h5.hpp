@@ -63,6 +63,9 @@ void put_numbers(const Handle& object, const std::string& name,
                  std::span<const std::uint64_t> values);
 std::optional<std::string> find_text(const Handle& object, const std::string& name);
 std::string text(const Handle& object, const std::string& name);
+bool has_attribute(const Handle& object, const std::string& name);
+/// The texts of an attribute that is one text or a list of texts; empty if it is something else.
+std::vector<std::string> find_texts(const Handle& object, const std::string& name);
 /// All text attributes, in the order in which they were made.
 std::vector<Text> texts(const Handle& object);
 std::vector<std::uint64_t> numbers(const Handle& object, const std::string& name);

@@ -73,6 +73,12 @@ std::unique_ptr<EstimateSource> source_of(const Arguments& arguments,
     throw StudyError("--truth: not beside " + operands.front() +
                      " (arrays have their truth in the same file): leave it out");
   }
+  const std::string ending = std::filesystem::path(operands.front()).extension().string();
+  if (!has_arrays(operands.front()) && (ending == ".h5" || ending == ".hdf5" || ending == ".mat")) {
+    throw StudyError(operands.front() + ": is there no such file, or no HDF5 file (arrays are in " +
+                     "one): give its name; convert a .mat of version 7 by "
+                     "experiments/convert/estimates.py");
+  }
   if (operands.size() > 1 && has_arrays(operands.front())) {
     throw StudyError(operands[1] + ": one file of arrays is judged at a time (it has all runs): " +
                      "judge the files apart");
@@ -96,6 +102,7 @@ std::unique_ptr<EstimateSource> source_of(const Arguments& arguments,
 
 int judge_command(const Arguments& arguments) {
   const JudgingOptions options = judging_options(arguments);
+  refuse_input_as_output(options.output, arguments.operands());
   const std::unique_ptr<EstimateSource> source = source_of(arguments, options);
   const std::vector<std::string> notes = judge_estimates(*source, options);
   const ResultFile file(options.output);

@@ -3,6 +3,8 @@
 
 #include "engine/errors.hpp"
 #include "engine/records/fingerprint.hpp"
+#include "engine/records/result_format.hpp"
+#include "engine/text/visible_text.hpp"
 #include "experiments/files/files.hpp"
 #include "experiments/judging/run_files.hpp"
 #include "experiments/judging/state_columns.hpp"
@@ -43,19 +45,30 @@ std::vector<std::string> header_of(const std::vector<std::string>& columns, std:
   return header;
 }
 
+h5::Handle opened(const std::filesystem::path& path) {
+  h5::Handle file = h5::open_file(path);
+  if (h5::find_text(file, "filetype") != format::kFiletype) return file;
+  throw StudyError(path.string() +
+                   ": is a result already (judge reads arrays): use montecarta analyze");
+}
+
 }  // namespace
 
 bool has_arrays(const std::filesystem::path& path) {
   const std::string signature = "\x89HDF\r\n\x1a\n";
   std::string head(signature.size(), '\0');
-  std::ifstream file(path, std::ios::binary);
-  file.read(head.data(), static_cast<std::streamsize>(head.size()));
-  return file.good() && head == signature;
+  for (const std::streamoff place : {0, 512, 1024, 2048}) {  // MATLAB puts 512 bytes before it
+    std::ifstream file(path, std::ios::binary);
+    file.seekg(place);
+    file.read(head.data(), static_cast<std::streamsize>(head.size()));
+    if (file.good() && head == signature) return true;
+  }
+  return false;
 }
 
 EstimateArrays::EstimateArrays(std::filesystem::path path, std::string cell)
     : path_(std::move(path)),
-      file_(h5::open_file(path_)),
+      file_(opened(path_)),
       cells_{std::move(cell)},
       states_(open(h5::has(file_, "error") ? "error" : "mean", 3)),
       covariance_(open("covariance", 4)),
@@ -142,10 +155,23 @@ StateShape EstimateArrays::shape_of_names() const {
   const auto width = static_cast<std::size_t>(states_.shape[2]);
   const auto d = static_cast<std::size_t>(covariance_.shape[2]);
   std::vector<std::string> columns;
-  if (const auto names = h5::find_text(file_, "names")) {
-    columns = split(*names, ',');
+  if (h5::has_attribute(file_, "names")) {
+    for (const std::string& text : h5::find_texts(file_, "names")) {
+      for (const std::string& name : split(text, ',')) columns.push_back(name);
+    }
+    if (columns.empty()) refuse("names", "are no texts: write x_m,y_m or a list of texts");
+  } else if (h5::has(file_, "names")) {
+    refuse("names", "is an array (an attribute is needed): write it as an attribute of the file");
+  } else if (!has_errors()) {
+    refuse("names",
+           "is missing (mean has columns, such as x_m,y_m,heading_rad): write it as a text "
+           "attribute of the file");
   } else {
     for (std::size_t k = 0; k < width; ++k) columns.push_back("e" + std::to_string(k));
+  }
+  const auto is_unprintable = [](const std::string& name) { return name != visible(name); };
+  if (std::ranges::any_of(columns, is_unprintable)) {
+    refuse("names", "have characters that cannot be printed: write plain names");
   }
   if (columns.size() != width) {
     refuse("names", "has " + std::to_string(columns.size()) + " columns (" + states_.name +
@@ -157,7 +183,7 @@ StateShape EstimateArrays::shape_of_names() const {
                              std::to_string(shape.dimension()) + "): write that of the error");
   }
   if (shape.columns != columns) {
-    refuse("names", "are not in the order of montecarta: write " + joined(shape.columns, ","));
+    refuse("names", "are not those of montecarta: write " + joined(shape.columns, ","));
   }
   if (!has_errors()) return shape;
   shape.kind = StateKind::vector;
@@ -241,15 +267,22 @@ StateRows EstimateArrays::estimates(std::size_t cell, std::size_t run) const {
 }
 
 StateRows EstimateArrays::truth(std::size_t run, const StateShape& /*shape*/) const {
-  if (truth_) return states_of(*truth_, run, truth_place(run));
+  if (truth_) {
+    StateRows rows = states_of(*truth_, run, truth_place(run));
+    if (!rows.time.empty()) return rows;
+    refuse("truth", "of run " + std::to_string(run) + " is NaN at all scans: give true states");
+  }
   StateRows rows{.shape = shape_};
+  for (std::size_t s = 0; s < states_.shape[1]; ++s) rows.line.push_back(s);
   if (time_) rows.time = numbers(*time_, run);
-  rows.time.resize(states_.shape[1]);
-  if (!time_) std::iota(rows.time.begin(), rows.time.end(), 0.0);
-  rows.line.resize(rows.time.size());
-  std::iota(rows.line.begin(), rows.line.end(), std::size_t{0});
+  if (!time_) rows.time.assign(rows.line.begin(), rows.line.end());
+  const auto is_unknown = [&](std::size_t s) { return std::isnan(rows.time[s]); };
+  std::erase_if(rows.line, is_unknown);
+  std::erase_if(rows.time, [](double time) { return std::isnan(time); });
   rows.state.assign(rows.time.size(),
                     Eigen::VectorXd::Zero(static_cast<Eigen::Index>(shape_.width())));
+  if (rows.time.empty())
+    refuse("time", "of run " + std::to_string(run) + " is NaN at all scans: give times");
   return rows;
 }
 

@@ -13,7 +13,7 @@
 
 namespace montecarta::experiments {
 
-/// Returns whether a file is in HDF5, and no result of montecarta.
+/// Returns whether a file is in HDF5.
 bool has_arrays(const std::filesystem::path& path);
 
 /// Estimates of one estimator in the arrays of an HDF5 file:

@@ -55,14 +55,15 @@ void put_rows(const Eigen::MatrixXd& matrix, std::size_t scan, std::span<double>
 }
 
 /// Marks a run as complete, or as failed if it ends although other runs and its truth go on. If
-/// runs have clocks of their own, only a run without estimates is known to have failed.
-void end_run(const MatchedRows& run, const TruthPath& truth, const ScanClock& clock,
-             RunRecord& record) {
+/// runs have clocks of their own, only a run without estimates is known to have failed. `truth` is
+/// nullptr if all scans have one.
+void end_run(const MatchedRows& run, const TruthPath* truth, const ScanClock& clock,
+             std::size_t cell, RunRecord& record) {
   constexpr double kUnknownCost = std::numeric_limits<double>::quiet_NaN();
   const std::size_t next = run.scans.empty() ? 0 : run.scans.back() + 1;
   const auto goes_on = [&] {
-    const double wanted = run.rows.time.back() + 0.9 * clock.period();
-    return clock.is_common() && clock.times().back() >= wanted && truth.goes_on_at(wanted);
+    const auto missed = clock.missed_after(run.rows.time.back(), cell);
+    return missed && (truth == nullptr || truth->goes_on_at(*missed));
   };
   const bool is_failed = run.scans.empty() || goes_on();
   if (!is_failed) return record.mark_complete(kUnknownCost);
@@ -165,12 +166,14 @@ std::vector<Pose> truths_of_scans(const std::vector<MatchedRows>& cells, std::si
 }
 
 /// Throws StudyError if the tolerance does not tell the rows of a file apart.
-void require_tolerance(const fs::path& path, std::span<const double> times, double tolerance) {
+void require_tolerance(const fs::path& path, std::span<const double> times,
+                       const TimeMatch& match) {
   const double least = least_spacing(times);
-  if (2.0 * tolerance < least) return;
-  throw StudyError("--tolerance " + to_text(tolerance) + ": rows of " + path.string() + " are " +
-                   to_text(least) + " s apart (half of that cannot tell neighbours apart): use " +
-                   "--interpolate, or a smaller --tolerance");
+  if (2.0 * match.tolerance < least) return;
+  throw StudyError("--tolerance " + to_text(match.tolerance) + ": rows of " + path.string() +
+                   " are " + to_text(least) + " s apart (half of that cannot tell neighbours " +
+                   "apart): use " + (match.interpolate ? "" : "--interpolate, or ") +
+                   "a smaller --tolerance");
 }
 
 /// The clock of all files, and the file with the most rows, which has the state and innovations of
@@ -181,22 +184,22 @@ struct Overview {
   ScanClock clock;
 };
 
-Overview overview_of(const EstimateSource& source, double tolerance) {
-  std::vector<std::vector<double>> times;
+Overview overview_of(const EstimateSource& source, const TimeMatch& match) {
+  std::vector<TimesOfRuns> times(source.cells().size());
   std::pair<std::size_t, std::size_t> longest;
   std::size_t most = 0;
   for (std::size_t c = 0; c < source.cells().size(); ++c) {
     for (std::size_t run = 0; run < source.runs().size(); ++run) {
-      times.push_back(source.times(c, run));
-      require_tolerance(source.place(c, run), times.back(), tolerance);
-      if (times.back().size() <= most) continue;
+      times[c].push_back(source.times(c, run));
+      require_tolerance(source.place(c, run), times[c].back(), match);
+      if (times[c].back().size() <= most) continue;
       longest = {c, run};
-      most = times.back().size();
+      most = times[c].back().size();
     }
   }
   const auto [c, run] = longest;
   StateRows rows = source.estimates(c, run);
-  if (most > 0) return {source.place(c, run), std::move(rows), ScanClock(times, tolerance)};
+  if (most > 0) return {source.place(c, run), std::move(rows), ScanClock(times, match.tolerance)};
   throw StudyError(source.place(c, run).string() +
                    ": no rows behind the header, nor in any other file (nothing to judge): write "
                    "one row for each time");
@@ -300,7 +303,7 @@ std::vector<std::string> write_runs(const EstimateSource& source, const JudgingO
     }
     for (std::size_t c = 0; c < cells.size(); ++c) {
       RunRecord record = record_of(layouts[c], cells[c], scan_truths, *options.convention, judged);
-      end_run(cells[c], truth, all.clock, record);
+      end_run(cells[c], source.has_errors() ? nullptr : &truth, all.clock, c, record);
       writer.write(c, run, record);
     }
   }
@@ -431,7 +434,7 @@ StudyPlan imported_plan(const EstimateSource& source, const Overview& all_files,
 
 std::vector<std::string> judge_estimates(const EstimateSource& source,
                                          const JudgingOptions& given) {
-  const Overview all = overview_of(source, given.match.tolerance);
+  const Overview all = overview_of(source, given.match);
   JudgingOptions options = given;
   options.convention = source.has_errors() || !source.has_states()
                            ? ErrorConvention::world

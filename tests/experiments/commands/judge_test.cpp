@@ -88,7 +88,7 @@ TEST_F(Judge, OwnEstimatesHaveTheVerdictOfTheirFilterAndEveryCommandReadsThem) {
     EXPECT_NEAR(mine.nees[b].mean, expected, 1e-12 * expected);
   }
   EXPECT_EQ(mine.verdict.answer, own.verdict.answer);
-  EXPECT_NEAR(mine.verdict.ratio().lower, own.verdict.ratio().lower, 1e-9);
+  EXPECT_NEAR(mine.verdict.ratio_estimate(), own.verdict.ratio_estimate(), 1e-9);
   EXPECT_DOUBLE_EQ(mine.over_runs("position_rmse").mean, own.over_runs("position_rmse").mean);
   for (const std::string& name : estimates("fastslam2_m10")) files.push_back(name);
   ASSERT_EQ(judge(files, {"--truth", "drives", "--error", "body", "-o", "mine.h5"}).code, 0);

@@ -219,11 +219,12 @@ Fitting fitting_in(const StateShape& shape, ErrorConvention right, std::uint64_t
     const ErrorConvention other =
         right == ErrorConvention::world ? ErrorConvention::body : ErrorConvention::world;
     const std::string by_other = in_words(hint, "mine", name_of(other));
-    const std::string fits = by_other.substr(0, by_other.find(", but as"));
-    const bool has_it = fits.find("not have been rejected") != std::string::npos &&
+    const std::string fits = by_other.substr(0, by_other.find(", and be rejected as"));
+    const bool has_it = fits.find("would pass as") != std::string::npos &&
                         fits.find(" " + name_of(right) + " (NEES ratio") != std::string::npos;
     fitting.right += has_it ? 1.0 : 0.0;
-    fitting.named += has_it && by_other.find("were they meant so") != std::string::npos ? 1.0 : 0.0;
+    fitting.named +=
+        has_it && by_other.find("are they of another error") != std::string::npos ? 1.0 : 0.0;
   }
   return fitting;
 }
@@ -301,14 +302,13 @@ TEST(ConventionHints, NameMistakesInTheLayout) {
 
 TEST(ConventionHints, SayWhatCannotBeToldApart) {
   const ConventionHint hint = hint_of(plane_shape(), ErrorConvention::body, 1);
-  EXPECT_THAT(in_words(hint, "mine", "world"),
-              HasSubstr("not have been rejected as body (NEES ratio "));
+  EXPECT_THAT(in_words(hint, "mine", "world"), HasSubstr("would pass as body (NEES ratio "));
   EXPECT_THAT(in_words(hint, "mine", "body"),
               HasSubstr("would have been rejected: world (NEES ratio "));
   const ConventionHint none{{hint.by_convention[0], hint.by_convention[0], hint.by_convention[0]}};
   EXPECT_THAT(in_words(none, "mine", "body"), HasSubstr("rejected as well: world (NEES ratio "));
   const ConventionHint alike{{hint.by_convention[1], hint.by_convention[1]}};
-  EXPECT_THAT(in_words(alike, "mine", "body"), HasSubstr("cannot tell them apart"));
+  EXPECT_THAT(in_words(alike, "mine", "body"), HasSubstr("cannot tell those that pass apart"));
   EXPECT_EQ(in_words(ConventionHint{}, "mine", "world"), "") << "of a vector";
 }
 
