@@ -12,6 +12,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <memory>
 #include <numeric>
 #include <span>
@@ -247,14 +248,23 @@ std::uint64_t missing_in(const MatchedRows& run, const ScanClock& clock) {
   return end - run.scans.size();
 }
 
-/// Writes innovations alone, which have no truth.
-void write_innovations(const EstimateSource& source, const Overview& all, const StudyPlan& plan,
-                       ResultWriter& writer, UnwrappedInnovations& unwrapped) {
+/// Writes innovations alone, which have no truth. Returns notes. Throws StudyError if a run has the
+/// innovations of an earlier one.
+std::vector<std::string> write_innovations(const EstimateSource& source, const Overview& all,
+                                           const StudyPlan& plan, ResultWriter& writer) {
   const std::vector<RecordLayout> layouts = layouts_of(plan, Detail::usual);
+  UnwrappedInnovations unwrapped;
+  std::map<std::pair<std::size_t, std::vector<double>>, fs::path> known;
   for (std::size_t run = 0; run < source.runs().size(); ++run) {
     for (std::size_t c = 0; c < source.cells().size(); ++c) {
       StateRows rows = source.estimates(c, run);
       unwrapped.add(rows);
+      const auto [earlier, is_new] = known.try_emplace({c, rows.nis}, source.place(c, run));
+      if (!is_new && rows.nis.size() > 1) {
+        throw StudyError(source.place(c, run).string() + ": has the innovations of " +
+                         earlier->second.string() +
+                         ", number by number (runs must be independent): give each run once");
+      }
       std::vector<std::size_t> scans = all.clock.scans_of(rows.time);
       const std::size_t n = rows.time.size();
       const MatchedRows matched{std::move(rows), std::move(scans),
@@ -264,17 +274,15 @@ void write_innovations(const EstimateSource& source, const Overview& all, const 
       writer.write(c, run, record);
     }
   }
+  return unwrapped.notes();
 }
 
 std::vector<std::string> write_runs(const EstimateSource& source, const JudgingOptions& options,
                                     const Overview& all, const StudyPlan& plan,
                                     ResultWriter& writer) {
+  if (!source.has_states()) return write_innovations(source, all, plan, writer);
   const std::vector<RecordLayout> layouts = layouts_of(plan, Detail::usual);
   UnwrappedInnovations unwrapped;
-  if (!source.has_states()) {
-    write_innovations(source, all, plan, writer, unwrapped);
-    return unwrapped.notes();
-  }
   const auto judged = judged_components(all.rows.shape, options.components);
   LikelyMistakes mistakes(source.cells(), *options.convention);
   TruthUse use;

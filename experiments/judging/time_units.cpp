@@ -2,6 +2,7 @@
 #include "experiments/judging/time_units.hpp"
 
 #include "engine/errors.hpp"
+#include "experiments/judging/scan_clock.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>
@@ -29,14 +30,9 @@ constexpr double kFarthestRows = 1e6;
 /// [s] Rows farther apart may be in us: 3 hours, or 10 ms in us.
 constexpr double kFarRows = 1e4;
 
-/// The median of the differences between neighbouring times; 0 if there is one row.
-double usual_spacing(const std::vector<double>& times) {
-  if (times.size() < 2) return 0.0;
-  std::vector<double> steps(times.size() - 1);
-  for (std::size_t k = 0; k < steps.size(); ++k) steps[k] = times[k + 1] - times[k];
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::ranges::nth_element(steps, middle);
-  return *middle;
+/// The usual difference between neighbouring times; 0 if there is one row.
+double spacing_of(const std::vector<double>& times) {
+  return times.size() < 2 ? 0.0 : usual_spacing(times);
 }
 
 std::string place_of_first(const StateRows& rows, const std::filesystem::path& path) {
@@ -45,7 +41,7 @@ std::string place_of_first(const StateRows& rows, const std::filesystem::path& p
 
 /// Whether most times have a truth of nearly the same time.
 bool are_mostly_found(const std::vector<double>& times, const std::vector<double>& truth) {
-  const double near = 0.01 * std::min(usual_spacing(truth), usual_spacing(times));
+  const double near = 0.01 * std::min(spacing_of(truth), spacing_of(times));
   const auto is_found = [&](double time) {
     const auto after = std::ranges::lower_bound(truth, time - near);
     return after != truth.end() && *after <= time + near;
@@ -60,7 +56,7 @@ bool is_factor(const std::vector<double>& times, double factor, const std::vecto
   const bool is_inside = factor * times.front() >= truth.front() - slack &&
                          factor * times.back() <= truth.back() + slack;
   if (!is_inside || factor * (times.back() - times.front()) < 0.5 * of_truth) return false;
-  if (factor > 1.0 && usual_spacing(truth) <= usual_spacing(times)) return false;
+  if (factor > 1.0 && spacing_of(truth) <= spacing_of(times)) return false;
   return !are_mostly_found(times, truth);
 }
 
@@ -69,7 +65,7 @@ bool is_factor(const std::vector<double>& times, double factor, const std::vecto
 void require_seconds(const StateRows& rows, const std::filesystem::path& path) {
   if (rows.time.empty()) return;
   const double largest = std::max(std::abs(rows.time.front()), std::abs(rows.time.back()));
-  const double spacing = usual_spacing(rows.time);
+  const double spacing = spacing_of(rows.time);
   const auto unit = std::ranges::find_if(
       kUnits, [&](const ClockUnit& one) { return largest >= one.least_since_1970; });
   if (unit == kUnits.end() && spacing <= kFarthestRows) return;
@@ -83,7 +79,7 @@ void require_seconds(const StateRows& rows, const std::filesystem::path& path) {
 }
 
 std::string note_on_times(const StateRows& rows, const std::filesystem::path& path) {
-  const double spacing = usual_spacing(rows.time);
+  const double spacing = spacing_of(rows.time);
   if (spacing < kFarRows) return "";
   return place_of_first(rows, path) + ": rows are " + to_text(spacing) +
          " s apart (they are judged so): if time_s is in us, divide it by 1e6";

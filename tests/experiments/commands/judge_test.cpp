@@ -354,6 +354,9 @@ TEST_F(Judge, InnovationsAloneNeedNoTruth) {
   EXPECT_EQ(call({"report", "mine.h5", "-o", "report"}).code, 0);
   EXPECT_THAT(judge(files, {"--innovations", "-o", "m.h5", "--truth", "t.csv"}).err,
               HasSubstr("--truth: not beside --innovations"));
+  write("innovation_1.csv", text_of("innovation_0.csv"));
+  EXPECT_THAT(judge(files, {"--innovations", "-o", "m.h5"}).err,
+              HasSubstr("innovation_1.csv: has the innovations of innovation_0.csv"));
   write("innovation_1.csv", "time_s,range_m,cov_0_0\n2,1,1\n1,1,1\n");
   EXPECT_THAT(judge(files, {"--innovations", "-o", "m.h5"}).err, HasSubstr("innovation_1.csv:3"));
   EXPECT_FALSE(exists("m.h5"));
