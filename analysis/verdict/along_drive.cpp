@@ -97,6 +97,14 @@ void AlongDrive::forget_if_enough() {
   standardised_.clear();
 }
 
+bool AlongDrive::have_short_memory() const {
+  constexpr double kLeastScans = 10.0;
+  const auto drives = drives_of(whitened_, dimension_, known_components(whitened_, dimension_));
+  if (drives.empty() || ratio_of(drives) < kLeastRatio) return false;
+  return correlated_average(drives, kUsualLevel).effective_samples >=
+         kLeastScans * static_cast<double>(drives.size());
+}
+
 std::vector<MemberTest> AlongDrive::tests(std::span<const std::string> components) const {
   std::vector<MemberTest> all;
   add_test(Family::size, "",

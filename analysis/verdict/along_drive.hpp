@@ -21,6 +21,9 @@ class AlongDrive {
   void merge(AlongDrive& next);
   /// Number of runs with errors; those of kFewestRunsOfAPlan runs and more are not kept.
   std::size_t runs() const { return runs_; }
+  /// Whether the errors forget so fast that averages over a run hardly depend on their law, which
+  /// the tests take to be Gaussian: each run is worth ten independent scans at least.
+  bool have_short_memory() const;
   /// The families of size and, of several components, of components; empty without errors.
   std::vector<MemberTest> tests(std::span<const std::string> components) const;
 

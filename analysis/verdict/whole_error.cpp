@@ -333,9 +333,10 @@ std::vector<FamilyTest> WholeError::families(double level, const ErrorNames& nam
 }
 
 /// Puts the tests along the drives in place of those of size and components, if the errors of all
-/// runs were kept.
+/// runs were kept and forget fast.
 void WholeError::judge_along_drives(const ErrorNames& names, std::vector<MemberTest>& all) const {
-  if (along_.runs() >= kFewestRunsOfAPlan || along_.runs() != nees_.ratios().n) return;
+  const bool has_all = along_.runs() < kFewestRunsOfAPlan && along_.runs() == nees_.ratios().n;
+  if (!has_all || !along_.have_short_memory()) return;
   std::vector<MemberTest> tests = along_.tests(names.components);
   if (tests.empty()) return;
   std::erase_if(all, [](const MemberTest& test) {

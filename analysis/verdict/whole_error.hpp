@@ -58,8 +58,8 @@ class WholeError {
   /// Adds one run with its NEES {scan}, which is NaN where it is not judged.
   void add(const WhitenedRun& run, std::span<const double> nees);
   /// The families that apply, judged together at `level`. Size and components of fewer than
-  /// kFewestRunsOfAPlan runs are judged along the drives; fewer than kFewestJudgedRuns runs have no
-  /// other families but the scans.
+  /// kFewestRunsOfAPlan runs are judged along the drives if errors forget fast; fewer than
+  /// kFewestJudgedRuns runs have no other families but the scans.
   std::vector<FamilyTest> families(double level, const ErrorNames& names) const;
   /// The side of the margin on which bets on the ratios of runs refuse the filter (STATISTICS 18).
   std::optional<Side> refused_by_bets(double margin, double level) const;
