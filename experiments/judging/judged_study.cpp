@@ -277,32 +277,54 @@ std::vector<std::string> write_innovations(const EstimateSource& source, const O
   return unwrapped.notes();
 }
 
+/// What is said of all runs.
+struct RunNotes {
+  UnwrappedInnovations unwrapped = {};
+  LikelyMistakes mistakes;
+  TruthUse use = {};
+  std::uint64_t missing = 0;
+
+  std::vector<std::string> all(const EstimateSource& source, const Overview& overview) const {
+    std::vector<std::string> notes = source.notes();
+    for (const auto& some :
+         {unwrapped.notes(), notes_on_times(overview, missing), use.notes(), mistakes.notes()}) {
+      notes.insert(notes.end(), some.begin(), some.end());
+    }
+    return notes;
+  }
+};
+
+/// {cell} The estimates of a run with their scans and truths.
+std::vector<MatchedRows> matched_run(const EstimateSource& source, std::size_t run,
+                                     const Overview& all, const StateRows& truth_rows,
+                                     const TruthPath& truth, RunNotes& notes) {
+  std::vector<MatchedRows> cells;
+  for (std::size_t c = 0; c < source.cells().size(); ++c) {
+    const fs::path path = source.place(c, run);
+    StateRows rows = source.estimates(c, run);
+    notes.unwrapped.add(rows);
+    require_alike(rows, path, all.rows, all.path);
+    notes.mistakes.add(c, rows, path, truth_rows);
+    std::vector<std::size_t> scans = all.clock.scans_of(rows.time);
+    auto truths = truth.at(rows, path, notes.use);
+    cells.push_back({std::move(rows), std::move(scans), std::move(truths)});
+    notes.missing += missing_in(cells.back(), all.clock);
+  }
+  return cells;
+}
+
 std::vector<std::string> write_runs(const EstimateSource& source, const JudgingOptions& options,
                                     const Overview& all, const StudyPlan& plan,
                                     ResultWriter& writer) {
   if (!source.has_states()) return write_innovations(source, all, plan, writer);
   const std::vector<RecordLayout> layouts = layouts_of(plan, Detail::usual);
-  UnwrappedInnovations unwrapped;
   const auto judged = judged_components(all.rows.shape, options.components);
-  LikelyMistakes mistakes(source.cells(), *options.convention);
-  TruthUse use;
-  std::uint64_t missing = 0;
+  RunNotes notes{.mistakes = LikelyMistakes(source.cells(), *options.convention)};
   for (std::size_t run = 0; run < source.runs().size(); ++run) {
     const StateRows truth_rows = source.truth(run, all.rows.shape);
-    mistakes.add_truth(truth_rows, source.truth_place(run));
+    notes.mistakes.add_truth(truth_rows, source.truth_place(run));
     const TruthPath truth(truth_rows, source.truth_place(run), options.match);
-    std::vector<MatchedRows> cells;
-    for (std::size_t c = 0; c < source.cells().size(); ++c) {
-      const fs::path path = source.place(c, run);
-      StateRows rows = source.estimates(c, run);
-      unwrapped.add(rows);
-      require_alike(rows, path, all.rows, all.path);
-      mistakes.add(c, rows, path, truth_rows);
-      std::vector<std::size_t> scans = all.clock.scans_of(rows.time);
-      auto truths = truth.at(rows, path, use);
-      cells.push_back({std::move(rows), std::move(scans), std::move(truths)});
-      missing += missing_in(cells.back(), all.clock);
-    }
+    const auto cells = matched_run(source, run, all, truth_rows, truth, notes);
     std::vector<Pose> scan_truths;
     if (plan.drives->itinerary().has_truth) {
       Drive drive;
@@ -315,12 +337,7 @@ std::vector<std::string> write_runs(const EstimateSource& source, const JudgingO
       writer.write(c, run, record);
     }
   }
-  std::vector<std::string> notes = source.notes();
-  std::ranges::copy(unwrapped.notes(), std::back_inserter(notes));
-  std::ranges::copy(notes_on_times(all, missing), std::back_inserter(notes));
-  std::ranges::copy(use.notes(), std::back_inserter(notes));
-  std::ranges::copy(mistakes.notes(), std::back_inserter(notes));
-  return notes;
+  return notes.all(source, all);
 }
 
 /// The convention that the user gave, or the only one that the state may have. Throws StudyError if

@@ -164,7 +164,8 @@ void LikelyMistakes::add(std::size_t cell, const StateRows& rows, const std::fil
   }
 }
 
-void LikelyMistakes::add_notes(const OfCell& cell, std::vector<std::string>& notes) const {
+/// Adds a sentence for each sign that components have.
+void LikelyMistakes::add_marks(const OfCell& cell, std::vector<std::string>& notes) {
   const std::array<const char*, kSigns> reasons = {
       "no variance is negative: is it a mark of what is not estimated?",
       "such components are in no test; is it a mark of what is not estimated?",
@@ -191,6 +192,10 @@ void LikelyMistakes::add_notes(const OfCell& cell, std::vector<std::string>& not
                     "): for a verdict on the others, add --components " +
                     remaining(cell.shape, names));
   }
+}
+
+void LikelyMistakes::add_notes(const OfCell& cell, std::vector<std::string>& notes) {
+  add_marks(cell, notes);
   for (std::size_t k = 0; k < cell.w_first.size(); ++k) {
     constexpr double kMuchNearer = 0.2;
     const Misfit &stated = cell.as_stated, &other = cell.w_first[k];

@@ -35,7 +35,8 @@ class LikelyMistakes {
 
  private:
   /// Signs that the variance of a component was not estimated, in the order of their notes.
-  enum Sign : std::uint8_t { negative, zero, huge, tiny, kSigns };
+  enum Sign : std::uint8_t { negative, zero, huge, tiny };
+  static constexpr std::size_t kSigns = 4;
   /// The rows in which a component has a sign.
   struct Marked {
     std::uint64_t rows = 0;
@@ -68,7 +69,8 @@ class LikelyMistakes {
                 const Eigen::VectorXd& truth) const;
   void compare_quaternions(const StateRows& rows, std::size_t row, const StateRows& truth,
                            OfCell& cell) const;
-  void add_notes(const OfCell& cell, std::vector<std::string>& notes) const;
+  static void add_marks(const OfCell& cell, std::vector<std::string>& notes);
+  static void add_notes(const OfCell& cell, std::vector<std::string>& notes);
 
   ErrorConvention convention_;
   std::vector<OfCell> cells_;

@@ -21,7 +21,7 @@ constexpr std::uint64_t kMostRuns = 10'000'000;
 /// The number in the name of a single truth or of its folder. With a number, the truth belongs to
 /// that run only.
 RunKey own_run_of(const fs::path& path) {
-  const RunKey by_name = numbered_files({path.filename()}).front().run;
+  RunKey by_name = numbered_files({path.filename()}).front().run;
   const fs::path folder = path.parent_path().filename();
   if (!by_name.empty() || !folder.string().starts_with("run")) return by_name;
   return numbered_files({folder / "truth.csv"}).front().run;
