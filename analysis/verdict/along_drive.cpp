@@ -78,9 +78,10 @@ void add_test(Family family, std::string name, std::vector<VectorSeries> drives,
 void AlongDrive::add(const WhitenedRun& run) {
   dimension_ = run.dimension;
   ++runs_;
+  forget_if_enough();
+  if (runs_ >= kFewestRunsOfAPlan) return;
   whitened_.push_back(run.whitened);
   standardised_.push_back(run.standardised);
-  forget_if_enough();
 }
 
 void AlongDrive::merge(AlongDrive& next) {

@@ -463,8 +463,8 @@ std::string consistent_words(const Verdict& verdict) {
                         : tails);
 }
 
-/// Text of the part that reaches farthest beyond the margin, if the average does not: " in heading
-/// from 10 s to 20 s, though on average it is".
+/// Text of the part whose interval reaches farthest beyond the margin, if that of the average does
+/// not: " in heading from 10 s to 20 s, as it is on average".
 std::string open_part(const Verdict& verdict) {
   const FamilyTest* size = verdict.find(Family::size);
   if (size == nullptr || !is_within_margin(Family::size, size->members.front(), verdict.within)) {

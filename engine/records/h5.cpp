@@ -168,6 +168,8 @@ std::string image_of(const Handle& file) {
   return image;
 }
 
+bool is_hdf5(const std::filesystem::path& path) { return H5Fis_hdf5(path.c_str()) > 0; }
+
 Handle open_file(const std::filesystem::path& path) {
   disable_error_printing();
   Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, file_access().id()));

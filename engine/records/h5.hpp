@@ -44,6 +44,8 @@ Handle create_file(const std::filesystem::path& path);
 Handle create_image(const std::string& name);
 /// The bytes of a file of create_image(). All other handles into it must be closed.
 std::string image_of(const Handle& file);
+/// Returns whether a file is in HDF5; false if it cannot be read.
+bool is_hdf5(const std::filesystem::path& path);
 /// Opens a file for reading, even if another process is writing runs to it.
 Handle open_file(const std::filesystem::path& path);
 /// Writes cached data and closes the file. Unlike the destructor, it throws if that fails.

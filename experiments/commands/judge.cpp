@@ -4,6 +4,7 @@
 #include "analysis/verdict/verdict.hpp"
 #include "engine/core/judgement.hpp"
 #include "engine/errors.hpp"
+#include "engine/records/h5.hpp"
 #include "engine/records/result_file.hpp"
 #include "engine/text/wrapped_text.hpp"
 #include "experiments/commands/arguments.hpp"
@@ -64,7 +65,7 @@ std::unique_ptr<EstimateSource> source_of(const Arguments& arguments,
                                           const JudgingOptions& options) {
   const std::vector<std::string>& operands = arguments.operands();
   const std::vector<std::string> truths = arguments.texts("truth");
-  if (operands.size() == 1 && has_arrays(operands.front())) {
+  if (operands.size() == 1 && h5::is_hdf5(operands.front())) {
     if (truths.empty()) {
       const std::string stem = std::filesystem::path(operands.front()).stem().string();
       return std::make_unique<EstimateArrays>(operands.front(),
@@ -74,12 +75,13 @@ std::unique_ptr<EstimateSource> source_of(const Arguments& arguments,
                      " (arrays have their truth in the same file): leave it out");
   }
   const std::string ending = std::filesystem::path(operands.front()).extension().string();
-  if (!has_arrays(operands.front()) && (ending == ".h5" || ending == ".hdf5" || ending == ".mat")) {
+  if (!h5::is_hdf5(operands.front()) &&
+      (ending == ".h5" || ending == ".hdf5" || ending == ".mat")) {
     throw StudyError(operands.front() + ": is there no such file, or no HDF5 file (arrays are in " +
                      "one): give its name; convert a .mat of version 7 by "
                      "experiments/convert/estimates.py");
   }
-  if (operands.size() > 1 && has_arrays(operands.front())) {
+  if (operands.size() > 1 && h5::is_hdf5(operands.front())) {
     throw StudyError(operands[1] + ": one file of arrays is judged at a time (it has all runs): " +
                      "judge the files apart");
   }

@@ -2,6 +2,7 @@
 #include "experiments/commands/output_path.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/records/h5.hpp"
 
 #include <fstream>
 #include <system_error>
@@ -21,12 +22,8 @@ std::string obstacle_at(const fs::path& path) {
   if (fs::is_directory(status)) return "is a folder";
   if (!fs::is_regular_file(status)) return "is a device, a pipe or a socket";
   if (fs::is_empty(path, ignored)) return "";
-  const std::string signature = "\x89HDF\r\n\x1a\n";
-  std::string head(signature.size(), '\0');
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return "";  // opening it for writing will report the reason
-  file.read(head.data(), static_cast<std::streamsize>(head.size()));
-  return head == signature ? "" : "is no HDF5 file";
+  if (!std::ifstream(path)) return "";  // opening it for writing will report the reason
+  return h5::is_hdf5(path) ? "" : "is no HDF5 file";
 }
 
 }  // namespace

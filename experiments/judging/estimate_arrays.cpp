@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <numeric>
 #include <span>
 #include <utility>
@@ -53,18 +52,6 @@ h5::Handle opened(const std::filesystem::path& path) {
 }
 
 }  // namespace
-
-bool has_arrays(const std::filesystem::path& path) {
-  const std::string signature = "\x89HDF\r\n\x1a\n";
-  std::string head(signature.size(), '\0');
-  for (const std::streamoff place : {0, 512, 1024, 2048}) {  // MATLAB puts 512 bytes before it
-    std::ifstream file(path, std::ios::binary);
-    file.seekg(place);
-    file.read(head.data(), static_cast<std::streamsize>(head.size()));
-    if (file.good() && head == signature) return true;
-  }
-  return false;
-}
 
 EstimateArrays::EstimateArrays(std::filesystem::path path, std::string cell)
     : path_(std::move(path)),

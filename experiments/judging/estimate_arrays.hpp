@@ -13,9 +13,6 @@
 
 namespace montecarta::experiments {
 
-/// Returns whether a file is in HDF5.
-bool has_arrays(const std::filesystem::path& path);
-
 /// Estimates of one estimator in the arrays of an HDF5 file:
 /// `error` {run, scan, d}, or `mean` {run, scan, column} and `truth` {run, scan, column} or
 /// {scan, column}; `covariance` {run, scan, d, d}; and, if there are, `time` {scan} or

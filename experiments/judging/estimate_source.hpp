@@ -29,13 +29,12 @@ class EstimateSource {
 
   /// {row} Times [s] of the estimates of a run.
   virtual std::vector<double> times(std::size_t cell, std::size_t run) const = 0;
+  /// A state without components is that of innovations alone, which have no truth.
   virtual StateRows estimates(std::size_t cell, std::size_t run) const = 0;
   /// The truth of a run, of states of this shape.
   virtual StateRows truth(std::size_t run, const StateShape& shape) const = 0;
   /// Whether states are errors already, so that no convention needs to be stated.
   virtual bool has_errors() const = 0;
-  /// Whether there are states and truths, and not innovations alone.
-  virtual bool has_states() const { return true; }
 
   /// (name, value) What identifies the contents: the same of the same estimates.
   virtual TextPairs contents() const = 0;

@@ -16,7 +16,6 @@ class InnovationFiles final : public EstimateFiles {
   std::vector<double> times(std::size_t cell, std::size_t run) const override;
   /// Rows without a state.
   StateRows estimates(std::size_t cell, std::size_t run) const override;
-  bool has_states() const override { return false; }
 };
 
 }  // namespace montecarta::experiments

@@ -206,6 +206,9 @@ Overview overview_of(const EstimateSource& source, const TimeMatch& match) {
                    "one row for each time");
 }
 
+/// Whether there are states with truths, and not innovations alone.
+bool has_states(const Overview& all) { return all.rows.shape.dimension() > 0; }
+
 /// Counts innovations with an angle beyond pi, which a wrapped difference of angles never has.
 class UnwrappedInnovations {
  public:
@@ -316,7 +319,7 @@ std::vector<MatchedRows> matched_run(const EstimateSource& source, std::size_t r
 std::vector<std::string> write_runs(const EstimateSource& source, const JudgingOptions& options,
                                     const Overview& all, const StudyPlan& plan,
                                     ResultWriter& writer) {
-  if (!source.has_states()) return write_innovations(source, all, plan, writer);
+  if (!has_states(all)) return write_innovations(source, all, plan, writer);
   const std::vector<RecordLayout> layouts = layouts_of(plan, Detail::usual);
   const auto judged = judged_components(all.rows.shape, options.components);
   RunNotes notes{.mistakes = LikelyMistakes(source.cells(), *options.convention)};
@@ -461,7 +464,7 @@ std::vector<std::string> judge_estimates(const EstimateSource& source,
                                          const JudgingOptions& given) {
   const Overview all = overview_of(source, given.match);
   JudgingOptions options = given;
-  options.convention = source.has_errors() || !source.has_states()
+  options.convention = source.has_errors() || !has_states(all)
                            ? ErrorConvention::world
                            : stated_error(all, given.convention);
   const StudyPlan plan = imported_plan(source, all, options);

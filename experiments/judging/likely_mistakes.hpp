@@ -25,9 +25,8 @@ class LikelyMistakes {
   /// Adds the truth of a run. Throws StudyError if angles are in another unit than their columns
   /// say.
   void add_truth(const StateRows& truth, const std::filesystem::path& path);
-  /// Adds one file of the estimator `cell`, with the truth of its run, which
-  /// was added before. Throws StudyError if times or angles are in another unit than their columns
-  /// say.
+  /// Adds one file of the estimator `cell`, with the truth of its run, which was added before.
+  /// Throws StudyError if times or angles are in another unit than their columns say.
   void add(std::size_t cell, const StateRows& rows, const std::filesystem::path& path,
            const StateRows& truth);
   /// Sentences on what was found, with component, file and line.

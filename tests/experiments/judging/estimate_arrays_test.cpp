@@ -54,7 +54,7 @@ TEST_F(EstimateArraysTest, HaveErrorsOfWhichNaNIsMissing) {
       .with("covariance", {2, 3, 2, 2}, {1, 0.5, 0.25, 2, 3})
       .with("time", {3}, {0.5, 1.0, 1.5});
   const EstimateArrays arrays(path_, "ekf");
-  EXPECT_TRUE(has_arrays(path_));
+  EXPECT_TRUE(h5::is_hdf5(path_));
   EXPECT_TRUE(arrays.has_errors());
   EXPECT_THAT(arrays.runs(), ElementsAre(0, 1));
   const StateRows rows = arrays.estimates(0, 0);
