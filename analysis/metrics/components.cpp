@@ -91,7 +91,7 @@ TextTable component_table(const StudyAnalysis& study) {
 }
 
 std::vector<Section> imported_sections(const StudyAnalysis& study) {
-  if (!study.imported.is_imported()) return {};
+  if (!study.imported.is_imported() || !study.has_truth) return {};
   const CellNumber largest = [](const CellAnalysis& cell) {
     const ComponentErrors& found = cell.get<ComponentErrors>();
     double ratio = kNaN;

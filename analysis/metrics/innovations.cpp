@@ -4,6 +4,7 @@
 
 #include "analysis/run/measured_run.hpp"
 #include "analysis/study/cell_report.hpp"
+#include "analysis/study/reference_sums.hpp"
 
 #include <cmath>
 #include <cstddef>
@@ -201,6 +202,10 @@ std::vector<Section> innovations_sections(const StudyAnalysis& study) {
   for (Section& section : sections) {
     const std::vector<Section::Block> leads = leads_of(study);
     section.blocks.insert(section.blocks.begin(), leads.begin(), leads.end());
+    if (study.imported.state == kInnovationsAlone) {
+      section.shown = Section::Shown::open;
+      section.add_html("<p>" + no_truth_sentence(study) + "</p>\n");
+    }
     section.add(largest_notes(study));
   }
   return sections;

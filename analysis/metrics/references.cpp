@@ -322,7 +322,8 @@ Figure map_size_figure(const StudyAnalysis& study) {
 }
 
 std::vector<Section> references_sections(const StudyAnalysis& study) {
-  if (study.has_truth && study.references.empty()) return {};
+  const bool is_other_program = study.imported.is_imported();  // which has no map here
+  if (study.references.empty() && (study.has_truth || is_other_program)) return {};
   Section section = section_of("references");
   if (!study.has_truth) section.add_html("<p>" + no_truth_sentence(study) + "</p>\n");
   section.add("reference", reference_table(study));

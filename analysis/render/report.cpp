@@ -57,7 +57,7 @@ std::vector<Section> arranged(std::vector<Section> sections, std::vector<Figure>
   std::vector<Section> page;
   for (SectionPlace& place : places) {
     Section section = take(place.section, sections).value_or(Section{place.section, ""});
-    section.shown = place.shown;
+    if (section.shown == Section::Shown::folded) section.shown = place.shown;
     place.figures.push_back(place.section);
     for (const std::string& name : place.figures) {
       if (auto figure = take(name, figures)) section.figures.push_back(std::move(*figure));

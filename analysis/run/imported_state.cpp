@@ -21,11 +21,12 @@ std::vector<std::string> words_in(const std::string& list) {
 
 ImportedState imported_state(const StoredCell& cell) {
   ImportedState found;
-  if (!cell.has("error")) return found;
   const auto setting = [&](const char* name) {
     const auto pair = std::ranges::find(cell.settings, name, &TextPairs::value_type::first);
     return pair == cell.settings.end() ? std::string() : pair->second;
   };
+  if (setting("state") == kInnovationsAlone) found.state = kInnovationsAlone;
+  if (!cell.has("error")) return found;
   found.state = setting("state");
   found.convention = setting("error");
   found.components = words_in(setting("components"));

@@ -8,10 +8,14 @@
 
 namespace montecarta::analysis {
 
+/// State of cells that have innovations and no errors.
+inline constexpr const char* kInnovationsAlone = "innovations";
+
 /// The quantity that another program estimates, with the convention of its error. All cells of a
 /// file agree.
 struct ImportedState {
-  std::string state;  ///< "pose", "pose in space" or "vector"; empty for filters of this program
+  /// "pose", "pose in space", "vector" or kInnovationsAlone; empty for filters of this program.
+  std::string state;
   std::string convention;  ///< convention of the error: "world", "body" or "right-invariant"
   std::vector<std::string> components = {"x", "y", "heading"};
   std::vector<std::string> units = {"m", "m", "rad"};

@@ -28,7 +28,7 @@ std::string components_text(const StudyAnalysis& study) {
 }
 
 std::vector<std::string> imported_notes(const StudyAnalysis& study) {
-  if (!study.imported.is_imported()) return {};
+  if (!study.imported.is_imported() || study.imported.state == kInnovationsAlone) return {};
   const std::string& convention = study.imported.convention;
   std::vector<std::string> notes = {
       prose("components", "imported",

@@ -170,9 +170,7 @@ StudyAnalysis begin(const ResultFile& file, double level, std::optional<double> 
   study.has_truth = file.has_errors();
   study.own_drives = file.description().drives.size();
   if (!file.cells().empty()) study.imported = imported_state(file.cells().front());
-  const std::pair<std::string, std::string> imported = {"kind", "imported"};
-  const bool is_imported = std::ranges::find(file.scenario(), imported) != file.scenario().end();
-  if (is_imported) study.study_runs = study.runs_here;  // numbers may start at 1
+  if (study.imported.is_imported()) study.study_runs = study.runs_here;  // numbers may start at 1
   study.beacons = file.landmarks().size();
   return study;
 }
