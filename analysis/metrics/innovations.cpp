@@ -6,10 +6,12 @@
 #include "analysis/study/cell_report.hpp"
 #include "analysis/study/reference_sums.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <numeric>
 #include <set>
+#include <span>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -30,10 +32,12 @@ class InnovationsOverRuns final : public MergedSums<InnovationsOverRuns> {
   explicit InnovationsOverRuns(const RunCriteria& criteria)
       : criteria_(&criteria),
         has_common_scans_(criteria.drives.empty()),
-        innovations_(criteria.times.size()) {}
+        innovations_(criteria.times.size(), criteria.innovation_components) {}
   void add(const MeasuredRun& run) override {
     if (run.rows.nis.empty()) return;
-    innovations_.add(run.rows.run, run.times, run.rows.nis, run.rows.nis_dof);
+    std::span<const double> components;
+    if (criteria_->innovation_components > 0) components = run.metrics.whitened().standardised;
+    innovations_.add(run.rows.run, run.times, run.rows.nis, run.rows.nis_dof, components);
   }
   void put(CellAnalysis& cell) override {
     if (innovations_.empty()) return;
@@ -172,10 +176,25 @@ std::vector<std::string> largest_notes(const StudyAnalysis& study) {
   return notes;
 }
 
+/// Text of the components that are not white: "; gap has a correlation of 0.19 at lag 1, where 0.06
+/// would be white".
+std::string correlated_words(const Innovations& found, const std::vector<std::string>& names) {
+  std::string words;
+  for (std::size_t k = 0; k < std::min(found.components.size(), names.size()); ++k) {
+    const ComponentCorrelation& one = found.components[k];
+    if (one.is_white()) continue;
+    words += "; " + names[k] + " has a correlation of " + readable(one.correlation, 2) +
+             " at lag " + std::to_string(one.lag) + ", where " + readable(one.bound, 2) +
+             " would be white";
+  }
+  return words;
+}
+
 /// Makes a sentence for each cell, where innovations are all that can be judged.
 std::vector<Section::Block> leads_of(const StudyAnalysis& study) {
   std::vector<Section::Block> leads;
-  if (study.has_truth || !study.references.empty()) return leads;
+  const bool are_judged = study.imported.state == kInnovationsAlone || !study.has_truth;
+  if (!are_judged || !study.references.empty()) return leads;
   for (const CellAnalysis& cell : study.cells) {
     const Innovations* found = cell.find<Innovations>();
     if (found == nullptr) {
@@ -186,7 +205,8 @@ std::vector<Section::Block> leads_of(const StudyAnalysis& study) {
     const double ratio = found->ratio;
     leads.emplace_back(Section::Lead{
         cell.label + ", innovations: " + whiteness_in_words(*found) + "; NIS per component " +
-        with_interval(ratio, found->verdict.ratio()) + ", where 1 is right."});
+        with_interval(ratio, found->verdict.ratio()) + ", where 1 is right" +
+        correlated_words(*found, study.imported.components) + "."});
   }
   return leads;
 }
@@ -204,7 +224,7 @@ std::vector<Section> innovations_sections(const StudyAnalysis& study) {
     section.blocks.insert(section.blocks.begin(), leads.begin(), leads.end());
     if (study.imported.state == kInnovationsAlone) {
       section.shown = Section::Shown::open;
-      section.add_html("<p>" + no_truth_sentence(study) + "</p>\n");
+      if (!study.has_truth) section.add_html("<p>" + no_truth_sentence(study) + "</p>\n");
     }
     section.add(largest_notes(study));
   }

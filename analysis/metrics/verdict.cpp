@@ -43,10 +43,12 @@ class VerdictOverRuns final : public MergedSums<VerdictOverRuns> {
                                    .share_of_runs = criteria_->share_of_runs};
     cell.verdict =
         judge(*sums_, {criteria_->components, criteria_->times}, analysis, ended, cell.complete);
+    if (criteria_->by_upper_bounds) take_for_upper_bounds(cell.verdict);
     const NeesSeries& series = cell.nees.front().series;
     cell.verdict.samples = series.samples;
     cell.verdict.unusable = series.unusable;
-    cell.verdict.missing = series.missing;
+    // A scan without an innovation has observed nothing.
+    cell.verdict.missing = criteria_->innovation_components > 0 ? 0 : series.missing;
   }
   static constexpr auto parts() { return std::tuple(added(&VerdictOverRuns::sums_)); }
 

@@ -90,6 +90,9 @@ RunCriteria criteria_of(const ResultFile& file, double level, double within) {
   if (imported.is_imported()) {
     criteria.components = imported.components;
     criteria.units = imported.units;
+    criteria.by_upper_bounds = !imported.pair.empty();
+    if (imported.state == kInnovationsAlone)
+      criteria.innovation_components = imported.components.size();
     criteria.share_of_runs = 1.0;  // a file of imported estimates is no shard
   }
   for (const ReferencePath& path : file.references()) {

@@ -26,9 +26,16 @@ ImportedState imported_state(const StoredCell& cell) {
     return pair == cell.settings.end() ? std::string() : pair->second;
   };
   if (setting("state") == kInnovationsAlone) found.state = kInnovationsAlone;
-  if (!cell.has("error")) return found;
+  found.gate = setting("gate");
+  if (!cell.has("error")) {
+    if (found.is_imported()) found.components = found.units = {};
+    return found;
+  }
   found.state = setting("state");
   found.convention = setting("error");
+  found.moved = setting("moved");
+  found.adds_truth_covariance = setting("truth_covariance") == "added";
+  found.pair = setting("pair");
   found.components = words_in(setting("components"));
   found.units = words_in(setting("units"));
   return found;

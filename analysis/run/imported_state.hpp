@@ -8,7 +8,8 @@
 
 namespace montecarta::analysis {
 
-/// State of cells that have innovations and no errors.
+/// State of cells that have innovations and no errors of a state. If their components are known,
+/// they are stored as errors, those of predicted measurements.
 inline constexpr const char* kInnovationsAlone = "innovations";
 
 /// The quantity that another program estimates, with the convention of its error. All cells of a
@@ -16,7 +17,13 @@ inline constexpr const char* kInnovationsAlone = "innovations";
 struct ImportedState {
   /// "pose", "pose in space", "vector" or kInnovationsAlone; empty for filters of this program.
   std::string state;
-  std::string convention;  ///< convention of the error: "world", "body" or "right-invariant"
+  std::string convention;  ///< name of the convention of the error, among kErrorConventions
+  std::string gate;   ///< limit of the NIS of innovations that are left; empty if there is none
+  std::string moved;  ///< what was moved of the truths onto the first estimates; empty if nothing
+  bool adds_truth_covariance = false;  ///< whether covariances of the truths were added
+  /// The two estimators whose difference is judged, by the largest covariance that it can have;
+  /// empty if errors are judged.
+  std::string pair;
   std::vector<std::string> components = {"x", "y", "heading"};
   std::vector<std::string> units = {"m", "m", "rad"};
 

@@ -36,7 +36,10 @@ struct RunCriteria {
   /// {reference with known errors} fixes of the reference on the path of the scans.
   std::vector<PathAtFixes> judged_fixes = {};
   ErrorFrame frame = ErrorFrame::of_truth;
-  bool calibrates = false;  ///< whether the PITs of errors are judged: only with matched noise
+  /// Number of components if the judged errors are innovations, which are white; else 0.
+  std::size_t innovation_components = 0;
+  bool by_upper_bounds = false;  ///< whether covariances are only bounds from above
+  bool calibrates = false;       ///< whether the PITs of errors are judged: only with matched noise
   /// {interim analysis} number of runs, if cells stop when their verdict is known; else empty.
   std::vector<std::uint64_t> runs_at_analyses = {};
   /// Share of the study's runs that the file has: less than 1 in a shard.

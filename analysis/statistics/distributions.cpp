@@ -35,6 +35,13 @@ double chi_squared_beyond(double tail, double freedom) {
   return quantile(complement(boost::math::chi_squared(freedom), tail));
 }
 
+double chi_squared_before_gate(double value, double freedom, double most) {
+  constexpr double kLeastTail = 1e-12;  // of a value that is the gate itself
+  const double beyond = chi_squared_tail(most, freedom);
+  const double tail = (chi_squared_tail(value, freedom) - beyond) / (1.0 - beyond);
+  return chi_squared_beyond(std::max(tail, kLeastTail), freedom);
+}
+
 double t_cdf(double t, double freedom) { return cdf(boost::math::students_t(freedom), t); }
 
 double t_p_value(double t, double freedom) {

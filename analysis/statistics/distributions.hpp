@@ -16,6 +16,10 @@ double chi_squared_quantile(double probability, double freedom);
 /// The value that a chi-square variable exceeds with probability `tail`.
 double chi_squared_beyond(double tail, double freedom);
 
+/// The value that has the probability among all chi-square variables which `value` has among those
+/// up to `most`, as a gate lets them pass.
+double chi_squared_before_gate(double value, double freedom, double most);
+
 /// Probability that Student's t is at most `t`.
 double t_cdf(double t, double freedom);
 /// Two-sided p-value of Student's t, or of the normal law if `freedom` is infinite.

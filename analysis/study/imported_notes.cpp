@@ -13,10 +13,22 @@ namespace {
 
 std::string sentence_on(const std::string& state, const std::string& convention) {
   if (convention == "body") return "in the frame of the estimate";
+  if (convention == "world-body")
+    return "estimate minus truth in the frame of the map, and of the rotation in that of the "
+           "estimate";
   if (convention == "right-invariant")
     return "right-invariant: the logarithm of mean times inverse truth";
   return state == "vector" ? "estimate minus truth"
                            : "estimate minus truth in the frame of the map";
+}
+
+std::vector<std::string> notes_on_innovations(const StudyAnalysis& study) {
+  std::vector<std::string> notes;
+  if (study.has_truth)
+    notes.push_back(prose("innovations", "alone", {{"components", components_text(study)}}));
+  if (!study.imported.gate.empty())
+    notes.push_back(prose("innovations", "gate", {{"gate", study.imported.gate}}));
+  return notes;
 }
 
 }  // namespace
@@ -28,13 +40,22 @@ std::string components_text(const StudyAnalysis& study) {
 }
 
 std::vector<std::string> imported_notes(const StudyAnalysis& study) {
-  if (!study.imported.is_imported() || study.imported.state == kInnovationsAlone) return {};
+  if (study.imported.state == kInnovationsAlone) return notes_on_innovations(study);
+  if (!study.imported.is_imported()) return {};
   const std::string& convention = study.imported.convention;
   std::vector<std::string> notes = {
       prose("components", "imported",
             {{"convention", convention},
              {"meaning", sentence_on(study.imported.state, convention)},
              {"components", components_text(study)}})};
+  if (!study.imported.pair.empty()) {
+    notes.push_back(prose("components", "pair", {{"pair", study.imported.pair}}));
+    return notes;
+  }
+  if (!study.imported.moved.empty())
+    notes.push_back(prose("components", "anchor", {{"moved", study.imported.moved}}));
+  if (study.imported.adds_truth_covariance)
+    notes.push_back(prose("components", "truth covariance"));
   for (const CellAnalysis& cell : study.cells) {
     const std::string hint = in_words(cell.get<ConventionHint>(), cell.label, convention);
     if (!hint.empty()) notes.push_back(prose("components", "hint", {{"hint", hint}}));

@@ -41,33 +41,18 @@ bool is_off(Answer answer) {
 
 }  // namespace
 
-InnovationSums::Totals::Totals(std::size_t scans)
-    : nis_(scans), products_(1 + std::min(kInnovationLags, scans / 4)) {}
-
-void InnovationSums::Totals::add(std::span<const double> nis, std::span<const std::uint32_t> dof) {
-  std::vector<double> there(nis.begin(), nis.end());
-  for (std::size_t s = 0; s < nis.size(); ++s) {
-    if (!is_innovation(nis[s], dof[s])) there[s] = kNaN;
+void LaggedProducts::add(std::span<const double> numbers) {
+  numbers_.clear();
+  for (std::size_t s = numbers.size(); s-- > 0;) {  // the last one comes first: earlier ones follow
+    if (!std::isnan(numbers[s])) numbers_.push_back(numbers[s]);
   }
-  nis_.add(there, std::vector<double>(dof.begin(), dof.end()));
-  add_products(nis, dof);
-}
-
-void InnovationSums::Totals::add_products(std::span<const double> nis,
-                                          std::span<const std::uint32_t> dof) {
-  // The last scan comes first, so that earlier ones follow; a scan without an innovation is zero.
-  deviations_.assign(nis.size() + kLagsTogether, 0.0);
-  is_there_.assign(deviations_.size(), 0.0);
-  for (std::size_t s = 0; s < nis.size(); ++s) {
-    if (!is_innovation(nis[s], dof[s])) continue;
-    const std::size_t place = nis.size() - 1 - s;
-    deviations_[place] = (nis[s] - dof[s]) / std::sqrt(2.0 * dof[s]);
-    is_there_[place] = 1.0;
-  }
+  const std::size_t count = numbers_.size();
+  is_there_.assign(count, 1.0);
+  numbers_.resize(count + kLagsTogether, 0.0);
+  is_there_.resize(numbers_.size(), 0.0);
   std::array<double, kLagsTogether> n{}, both{}, product{};
-  for (std::size_t place = nis.size(); place-- > 0;) {
-    if (is_there_[place] == 0.0) continue;
-    const double* const earlier = deviations_.data() + place;
+  for (std::size_t place = count; place-- > 0;) {
+    const double* const earlier = numbers_.data() + place;
     const double* const is_there = is_there_.data() + place;
     for (std::size_t lag = 0; lag < kLagsTogether; ++lag) {
       n[lag] += is_there[lag];
@@ -82,8 +67,41 @@ void InnovationSums::Totals::add_products(std::span<const double> nis,
   }
 }
 
+std::size_t LaggedProducts::lags(std::uint64_t runs) const {
+  const auto of_run = static_cast<std::size_t>(products_[0].n / static_cast<double>(runs));
+  return std::min(products_.size() - 1, of_run / 4);
+}
+
+double LaggedProducts::correlation(std::size_t lag) const {
+  const double mean = products_[0].both / (2.0 * products_[0].n);
+  const double power = products_[0].mean_product(mean);
+  if (products_[lag].n == 0.0 || !(power > 0.0)) return kNaN;
+  return products_[lag].mean_product(mean) / power;
+}
+
+InnovationSums::Totals::Totals(std::size_t scans) : nis_(scans), products_(scans) {}
+
+void InnovationSums::Totals::add(std::span<const double> nis, std::span<const std::uint32_t> dof) {
+  std::vector<double> there(nis.begin(), nis.end());
+  for (std::size_t s = 0; s < nis.size(); ++s) {
+    if (!is_innovation(nis[s], dof[s])) there[s] = kNaN;
+  }
+  nis_.add(there, std::vector<double>(dof.begin(), dof.end()));
+  for (std::size_t s = 0; s < there.size(); ++s) {
+    there[s] = (there[s] - dof[s]) / std::sqrt(2.0 * dof[s]);  // NaN stays NaN
+  }
+  products_.add(there);
+}
+
 void InnovationSums::add(std::uint64_t run, std::span<const double> times,
-                         std::span<const double> nis, std::span<const std::uint32_t> dof) {
+                         std::span<const double> nis, std::span<const std::uint32_t> dof,
+                         std::span<const double> standardised) {
+  const std::size_t d = components_.size();
+  std::vector<double> component(standardised.empty() ? 0 : nis.size());
+  for (std::size_t k = 0; k < d && !standardised.empty(); ++k) {
+    for (std::size_t s = 0; s < component.size(); ++s) component[s] = standardised[s * d + k];
+    components_[k].add(component);
+  }
   std::optional<LargestRun> next;
   for (std::size_t s = 0; s < nis.size(); ++s) {
     if (!is_innovation(nis[s], dof[s])) continue;
@@ -101,6 +119,7 @@ void InnovationSums::add(std::uint64_t run, std::span<const double> times,
 
 void InnovationSums::merge(InnovationSums& next) {
   merge_into(others_, next.others_);
+  merge_into(components_, next.components_);
   if (!next.largest_) return;
   if (!largest_) return largest_.swap(next.largest_);
   if (next.largest_->deviate > largest_->deviate) largest_.swap(next.largest_);
@@ -115,8 +134,9 @@ Innovations InnovationSums::result(std::span<const double> times, double level,
   std::vector<std::uint32_t> dof = largest_->dof;
   dof[largest_->scan] = 0;
   without.add(largest_->nis, dof);
-  Innovations result = all.result(times, level, within);
-  const Innovations rest = without.result(times, level, within);
+  const auto components = correlated_components(all.runs(), level);
+  Innovations result = all.result(times, level, within, components);
+  const Innovations rest = without.result(times, level, within, components);
   result.largest = {.nis = largest_->nis[largest_->scan],
                     .dof = static_cast<double>(largest_->dof[largest_->scan]),
                     .run = largest_->run,
@@ -127,9 +147,28 @@ Innovations InnovationSums::result(std::span<const double> times, double level,
   return result;
 }
 
+std::vector<ComponentCorrelation> InnovationSums::correlated_components(std::uint64_t runs,
+                                                                        double level) const {
+  std::vector<ComponentCorrelation> all(components_.size());
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const std::size_t lags = components_[k].lags(runs);
+    for (std::size_t lag = 1; lag <= lags; ++lag) {
+      const ComponentCorrelation one{.lag = lag,
+                                     .correlation = components_[k].correlation(lag),
+                                     .bound = white_deviate(lags * (1 + all.size()), level) /
+                                              std::sqrt(components_[k].pairs(lag))};
+      const double distance = std::abs(one.correlation) / one.bound;
+      if (all[k].lag == 0 || distance > std::abs(all[k].correlation) / all[k].bound) all[k] = one;
+    }
+  }
+  return all;
+}
+
 Innovations InnovationSums::Totals::result(std::span<const double> times, double level,
-                                           double within) const {
+                                           double within,
+                                           std::vector<ComponentCorrelation> components) const {
   Innovations result;
+  result.components = std::move(components);
   double tested = 0.0, inside = 0.0;
   for (const SummedError::Scan& scan : nis_.scans()) {
     const auto freedom = static_cast<std::uint64_t>(scan.dimensions);
@@ -149,13 +188,13 @@ Innovations InnovationSums::Totals::result(std::span<const double> times, double
 void InnovationSums::Totals::find_correlations(double level, Innovations& result) const {
   result.autocorrelation.assign(kInnovationLags, kNaN);
   result.white_bound.assign(kInnovationLags, kNaN);
-  const double mean = products_[0].both / (2.0 * products_[0].n);
-  const double power = products_[0].mean_product(mean);
+  const std::size_t lags = products_.lags(runs());
   double farthest = 0.0;
-  for (std::size_t lag = 1; lag < products_.size(); ++lag) {
-    if (products_[lag].n == 0.0 || !(power > 0.0)) continue;
-    const double correlation = products_[lag].mean_product(mean) / power;
-    const double bound = white_deviate(products_.size() - 1, level) / std::sqrt(products_[lag].n);
+  for (std::size_t lag = 1; lag <= lags; ++lag) {
+    const double correlation = products_.correlation(lag);
+    if (std::isnan(correlation)) continue;
+    const double bound = white_deviate(lags * (1 + result.components.size()), level) /
+                         std::sqrt(products_.pairs(lag));
     result.autocorrelation[lag - 1] = correlation;
     result.white_bound[lag - 1] = bound;
     if (result.worst_lag > 0 && std::abs(correlation) / bound <= farthest) continue;
@@ -184,7 +223,8 @@ void InnovationSums::Totals::judge_size(std::span<const double> times, double le
 
 Whiteness Innovations::whiteness() const {
   if (worst_lag == 0) return Whiteness::untested;
-  const bool is_white = std::abs(autocorrelation[worst_lag - 1]) <= white_bound[worst_lag - 1];
+  const bool is_white = std::abs(autocorrelation[worst_lag - 1]) <= white_bound[worst_lag - 1] &&
+                        std::ranges::all_of(components, &ComponentCorrelation::is_white);
   return is_white ? Whiteness::white : Whiteness::not_white;
 }
 

@@ -7,6 +7,8 @@
 #include "analysis/verdict/summed_error.hpp"
 #include "analysis/verdict/verdict.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -17,7 +19,8 @@
 
 namespace montecarta::analysis {
 
-/// Largest lag, in scans, at which innovations are correlated; at most a quarter of the scans.
+/// Largest lag at which innovations are correlated, counted in innovations; at most a quarter of
+/// those of a run.
 inline constexpr std::size_t kInnovationLags = 20;
 
 /// Fewest runs whose means judge the size of innovations that are not white.
@@ -39,6 +42,15 @@ struct LargestInnovation {
   double ratio_without = kNaN;
   Whiteness whiteness_without = Whiteness::untested;
   Answer answer_without = Answer::untested;
+};
+
+/// The correlation of a component of the innovations with itself, each in units of its deviation,
+/// at the lag where it is farthest from its bound.
+struct ComponentCorrelation {
+  std::size_t lag = 0;  ///< 0 if none is tested
+  double correlation = kNaN;
+  double bound = kNaN;
+  bool is_white() const { return lag == 0 || std::abs(correlation) <= bound; }
 };
 
 /// Test of the NIS, which needs no truth. For a consistent filter its expectation is 1 for each
@@ -64,6 +76,8 @@ struct Innovations {
   /// Lag with the largest ratio of autocorrelation to bound; 0 if none is tested.
   std::size_t worst_lag = 0;
   LargestInnovation largest;
+  /// {component} correlations of the components; empty if they are not known.
+  std::vector<ComponentCorrelation> components;
 
   Whiteness whiteness() const;
   /// Returns whether the largest innovation decides a finding: without it the whiteness is another
@@ -92,26 +106,23 @@ struct LargestRun {
   }
 };
 
-/// Adds up the NIS over runs.
-class InnovationSums {
+/// Sums over pairs of numbers of a run that are up to kInnovationLags apart, over all runs.
+class LaggedProducts {
  public:
-  explicit InnovationSums(std::size_t scans) : others_(scans) {}
+  LaggedProducts() = default;  ///< empty sums, to be filled by a SumReader
+  explicit LaggedProducts(std::size_t scans)
+      : products_(1 + std::min(kInnovationLags, scans / 4)) {}
 
-  /// Adds the innovations of run number `run`: `times` [s], `nis` and `dof`, all {scan}.
-  void add(std::uint64_t run, std::span<const double> times, std::span<const double> nis,
-           std::span<const std::uint32_t> dof);
-  bool empty() const { return !largest_; }
-  /// The test. There must be an innovation. `times` [s] of the scans; `level` of the whiteness and
-  /// of bounds, `within` the margin.
-  Innovations result(std::span<const double> times, double level, double within) const;
-  static constexpr auto parts() {
-    using Sums = InnovationSums;
-    return std::tuple(Part{[](Sums& sums, Sums& next) { sums.merge(next); },
-                           std::tuple(&Sums::others_, &Sums::largest_)});
-  }
+  /// Adds the numbers of one run, of which NaN are left out.
+  void add(std::span<const double> numbers);
+  /// Largest lag that is tested if `runs` runs were added: at most a quarter of their numbers.
+  std::size_t lags(std::uint64_t runs) const;
+  /// Number of pairs at a lag, and their correlation; NaN if there is none.
+  double pairs(std::size_t lag) const { return products_[lag].n; }
+  double correlation(std::size_t lag) const;
+  static constexpr auto parts() { return std::tuple(added(&LaggedProducts::products_)); }
 
  private:
-  /// Sums over pairs of scans that both have innovations, over all runs.
   struct Products {
     double n = 0.0;        ///< number of pairs
     double both = 0.0;     ///< sum over all pairs of both members
@@ -121,33 +132,62 @@ class InnovationSums {
       return std::tuple(added(&Products::n, &Products::both, &Products::product));
     }
   };
+
+  std::vector<Products> products_;  ///< {lag from 0}
+  /// The numbers of the run that is added, the last one first, and 1 where there is one; behind
+  /// them zeros.
+  std::vector<double> numbers_, is_there_;
+};
+
+/// Adds up the NIS over runs.
+class InnovationSums {
+ public:
+  /// Innovations of `components` components are also correlated component by component.
+  explicit InnovationSums(std::size_t scans, std::size_t components = 0)
+      : others_(scans), components_(components, LaggedProducts(scans)) {}
+
+  /// Adds the innovations of run number `run`: `times` [s], `nis` and `dof`, all {scan}; and, if
+  /// components are known, each in units of its deviation, `standardised` {scan, component}, NaN
+  /// where there is none.
+  void add(std::uint64_t run, std::span<const double> times, std::span<const double> nis,
+           std::span<const std::uint32_t> dof, std::span<const double> standardised = {});
+  bool empty() const { return !largest_; }
+  /// The test. There must be an innovation. `times` [s] of the scans; `level` of the whiteness and
+  /// of bounds, `within` the margin.
+  Innovations result(std::span<const double> times, double level, double within) const;
+  static constexpr auto parts() {
+    using Sums = InnovationSums;
+    return std::tuple(Part{[](Sums& sums, Sums& next) { sums.merge(next); },
+                           std::tuple(&Sums::others_, &Sums::largest_, &Sums::components_)});
+  }
+
+ private:
   /// Sums over whole runs.
   struct Totals {
     explicit Totals(std::size_t scans);
     void add(std::span<const double> nis, std::span<const std::uint32_t> dof);
-    Innovations result(std::span<const double> times, double level, double within) const;
+    /// The findings; the whiteness of the components is known already.
+    Innovations result(std::span<const double> times, double level, double within,
+                       std::vector<ComponentCorrelation> components) const;
+    /// Number of runs with an innovation.
+    std::uint64_t runs() const { return nis_.ratios().n; }
     static constexpr auto parts() { return std::tuple(added(&Totals::nis_, &Totals::products_)); }
 
    private:
-    /// Number of runs with an innovation.
-    std::uint64_t runs() const { return nis_.ratios().n; }
-    void add_products(std::span<const double> nis, std::span<const std::uint32_t> dof);
     void find_correlations(double level, Innovations& result) const;
     void judge_size(std::span<const double> times, double level, double within,
                     Innovations& result) const;
 
-    SummedError nis_;  ///< {scan} sums of the NIS
-    /// {lag from 0} sums over pairs of scans that are that far apart.
-    std::vector<Products> products_;
-    /// {scan} deviations of the run that is added, the last scan first, and 1 where there is a
-    /// deviation.
-    std::vector<double> deviations_, is_there_;
+    SummedError nis_;          ///< {scan} sums of the NIS
+    LaggedProducts products_;  ///< of the deviations of the NIS
   };
   void merge(InnovationSums& next);
+  std::vector<ComponentCorrelation> correlated_components(std::uint64_t runs, double level) const;
 
   Totals others_;  ///< sums over all runs except that of `largest_`
   /// Run that is counted with its largest innovation and without it.
   std::optional<LargestRun> largest_;
+  std::vector<LaggedProducts> components_;  ///< {component}
 };
 
 }  // namespace montecarta::analysis

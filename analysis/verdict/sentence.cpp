@@ -414,7 +414,8 @@ std::string answer_words(const Verdict& verdict) {
     case Answer::consistent:
       return within_words(verdict) + slight_words(verdict);
     case Answer::undecided:
-      return name + ": " + more_runs_words(verdict);
+      return name + ": " +
+             (verdict.is_by_upper_bounds ? "no fault is shown" : more_runs_words(verdict));
     default:
       return (is_slight(verdict) ? "slightly " : "") + name + ": " + shown_words(verdict);
   }
@@ -489,6 +490,10 @@ std::string open_part(const Verdict& verdict) {
 }
 
 std::string undecided_words(const Verdict& verdict) {
+  if (verdict.is_by_upper_bounds) {
+    return "undecided: its errors are not shown to be larger than they may be at most, which shows "
+           "no fault and no consistency";
+  }
   const std::uint64_t runs = complete_runs(verdict);
   const std::string words = "undecided: " + std::to_string(runs) +
                             (runs == 1 ? " run does" : " runs do") + " not show whether it is " +

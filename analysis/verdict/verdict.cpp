@@ -303,6 +303,25 @@ Verdict judge(std::vector<FamilyTest> families, double level, double within, std
   return verdict;
 }
 
+void take_for_upper_bounds(Verdict& verdict) {
+  std::erase_if(verdict.families, [](const FamilyTest& test) {
+    const bool is_bias = test.family == Family::bias || test.family == Family::bias_by_stretch;
+    return !is_ratio(test.family) && !is_bias;
+  });
+  for (FamilyTest& test : verdict.families) {
+    for (Member& member : test.members) {
+      if (is_ratio(test.family) && member.estimate < 1.0) member.p = 1.0;
+    }
+  }
+  judge_together(verdict.families, verdict.level);
+  verdict.is_by_upper_bounds = true;
+  verdict.of_tests = answer_of_tests(verdict);
+  if (verdict.of_tests == Answer::consistent) verdict.of_tests = Answer::undecided;
+  verdict.answer = answer_of(verdict);
+  verdict.is_refused = is_refused(verdict);
+  verdict.more_runs.reset();
+}
+
 void refuse_by_bets(Side side, Verdict& verdict) {
   if (verdict.answer == Answer::consistent || verdict.answer == Answer::untested) return;
   verdict.is_refused = true;

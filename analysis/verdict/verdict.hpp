@@ -166,6 +166,9 @@ struct Verdict {
   bool is_refused = false;
   /// The side of the margin on which bets refuse the filter, in a study with interim analyses.
   std::optional<Side> refused_by_bets = {};
+  /// Whether covariances are only bounds from above. Then errors that are too small are expected,
+  /// nothing is shown to be consistent, and correlations and spreads say nothing.
+  bool is_by_upper_bounds = false;
 
   /// The tests of a family; nullptr if it does not apply.
   const FamilyTest* find(Family family) const;
@@ -178,6 +181,10 @@ struct Verdict {
 /// for `runs` complete runs.
 Verdict judge(std::vector<FamilyTest> families, double level, double within, std::uint64_t runs,
               BesideTests beside = {});
+
+/// Takes the covariances of a verdict for upper bounds: what errors that are too small,
+/// correlations, spreads and tails had shown is dropped.
+void take_for_upper_bounds(Verdict& verdict);
 
 /// Refuses a filter by bets (STATISTICS 18), unless it is shown to be consistent.
 void refuse_by_bets(Side side, Verdict& verdict);

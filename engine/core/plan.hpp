@@ -51,8 +51,10 @@ inline constexpr std::uint64_t kRunsBesideSums = 16;
 struct ImportedError {
   std::size_t components = 0;
   bool has_innovations = false;
-  bool has_conventions = false;  ///< the error may follow several conventions (kErrorConventions)
-  bool has_pose = false;         ///< the estimate is a pose in the plane, and stored as well
+  /// Number of conventions that the error may follow, the first of kErrorConventions; 0 if its
+  /// definition is certain.
+  std::size_t conventions = 0;
+  bool has_pose = false;  ///< the estimate is a pose in the plane, and stored as well
 };
 
 /// One filter in one setting, repeated in runs; one curve of a figure.

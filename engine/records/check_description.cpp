@@ -135,8 +135,8 @@ void check_drives(const ResultDescription& d, const Check& check) {
 
 std::vector<std::string_view> nees_columns() {
   std::vector<std::string_view> names;
-  for (const StoredConvention& convention : kErrorConventions)
-    names.emplace_back(convention.column);
+  for (std::size_t k = 0; k < kConventionsInPlane; ++k)
+    names.emplace_back(kErrorConventions.at(k).column);
   return names;
 }
 

@@ -89,8 +89,9 @@ bool has_imported_error(const Cell& cell) {
   return is_imported(cell) && cell.imported->components > 0;
 }
 bool has_pose(const Cell& cell) { return is_filter(cell) || cell.imported->has_pose; }
-bool has_conventions(const Cell& cell) {
-  return is_imported(cell) && cell.imported->has_conventions;
+template <std::size_t K>
+bool has_convention(const Cell& cell) {
+  return is_imported(cell) && K < cell.imported->conventions;
 }
 bool has_innovations(const Cell& cell) { return is_filter(cell) || cell.imported->has_innovations; }
 
@@ -109,11 +110,12 @@ ColumnKind column(const char* name, const char* group, Element element, std::vec
   return {name, group, element, std::move(axes), units, long_name, applies};
 }
 
-ColumnKind nees_by(const StoredConvention& convention) {
-  return column(convention.column, "pose", Element::f64, {Axis::scan}, "1", convention.meaning,
-                has_conventions);
+template <std::size_t K>
+ColumnKind nees_by() {
+  return column(kErrorConventions[K].column, "pose", Element::f64, {Axis::scan}, "1",
+                kErrorConventions[K].meaning, has_convention<K>);
 }
-static_assert(kErrorConventions.size() == 3, "make_table() has a column of each");
+static_assert(kErrorConventions.size() == 4, "make_table() has a column of each");
 
 // NOLINTNEXTLINE(readability-function-size): a table, a column in two lines
 std::vector<ColumnKind> make_table() {
@@ -150,9 +152,10 @@ std::vector<ColumnKind> make_table() {
       column("error_covariance", "pose", f64, {scan, error_component, error_component_column},
              "products of the cell's setting units",
              "imported: covariance of error, as the other program reported it", has_imported_error),
-      nees_by(kErrorConventions[0]),
-      nees_by(kErrorConventions[1]),
-      nees_by(kErrorConventions[2]),
+      nees_by<0>(),
+      nees_by<1>(),
+      nees_by<2>(),
+      nees_by<3>(),
       of_report("map_size", "pose", f64, "landmarks in the map, mean over the particles",
                 [](Report r) { return r.map_size; }),
       of_report("association_correct", "association", f64,

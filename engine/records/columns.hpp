@@ -30,7 +30,12 @@ inline constexpr std::array kErrorConventions = {
     StoredConvention{"body", "nees_body",
                      "imported: NEES if the covariance were of the error body"},
     StoredConvention{"right-invariant", "nees_right_invariant",
-                     "imported: NEES if the covariance were of the error right-invariant"}};
+                     "imported: NEES if the covariance were of the error right-invariant"},
+    StoredConvention{"world-body", "nees_world_body",
+                     "imported: NEES if the covariance were of the error world-body"}};
+
+/// The first of them are those of a pose in the plane, where world-body is world.
+inline constexpr std::size_t kConventionsInPlane = 3;
 
 enum class Element : std::uint8_t { f64, u8, u16, u32, u64 };
 std::size_t size_of(Element element);

@@ -18,9 +18,13 @@
 #include "experiments/judging/run_files.hpp"
 #include "experiments/text/words.hpp"
 
+#include <array>
 #include <iostream>
 #include <memory>
+#include <span>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 namespace montecarta::experiments {
@@ -30,7 +34,7 @@ namespace {
 /// state that has only one.
 std::optional<ErrorConvention> convention_of(const Arguments& arguments) {
   const auto said = arguments.text("error");
-  for (const ErrorConvention convention : conventions_of(StateKind::pose)) {
+  for (const ErrorConvention convention : conventions_of(StateKind::pose_in_space)) {
     if (said == name_of(convention)) return convention;
   }
   return std::nullopt;
@@ -53,6 +57,10 @@ JudgingOptions judging_options(const Arguments& arguments) {
   options.match.interpolate = arguments.has("interpolate");
   options.match.longest_gap = arguments.number("longest-gap", 0.0, 1e9);
   options.equal_times = equal_times_of(arguments);
+  if (const auto name = arguments.text("anchor")) options.anchor = anchor_named(*name);
+  options.adds_truth_covariance = arguments.has("truth-cov");
+  options.are_innovations = arguments.has("innovations");
+  options.gate = arguments.number("gate", 0.01, 1e6);
   if (const auto names = arguments.text("components")) options.components = split(*names, ',');
   options.existing = arguments.has("force") ? Existing::replace : Existing::refuse;
   options.provenance = provenance_of("judge", arguments);
@@ -60,50 +68,109 @@ JudgingOptions judging_options(const Arguments& arguments) {
   return options;
 }
 
-/// The estimates that the operands name: CSV files with their truths, or one HDF5 file of arrays.
-std::unique_ptr<EstimateSource> source_of(const Arguments& arguments,
-                                          const JudgingOptions& options) {
-  const std::vector<std::string>& operands = arguments.operands();
-  const std::vector<std::string> truths = arguments.texts("truth");
-  if (operands.size() == 1 && h5::is_hdf5(operands.front())) {
-    if (truths.empty()) {
-      const std::string stem = std::filesystem::path(operands.front()).stem().string();
-      return std::make_unique<EstimateArrays>(operands.front(),
-                                              arguments.text("cell").value_or(stem));
-    }
-    throw StudyError("--truth: not beside " + operands.front() +
-                     " (arrays have their truth in the same file): leave it out");
+/// What the files of estimates have in place of a truth, if none is named.
+OwnTruth own_truth_of(const std::string& estimates, const std::vector<std::string>& truths) {
+  const OwnTruth found = own_truth_in(CsvRows(estimates).columns());
+  if (truths.empty() && found == OwnTruth::none) {
+    throw StudyError(
+        "judge: --truth PATH... is missing (an error is estimate minus truth): name "
+        "the true states, give the estimates columns true_x_m, ... beside x_m, ..., "
+        "or columns error_x_m, ... instead of them");
   }
+  if (truths.empty() || found == OwnTruth::none) return found;
+  throw StudyError("--truth: not beside " + estimates + " (its columns begin with " +
+                   (found == OwnTruth::columns ? kTruthPrefix + ": it has a truth)"
+                                               : kErrorPrefix + ": it needs none)") +
+                   ": leave it out");
+}
+
+/// Throws StudyError if one of these options was given, which do not apply to `what`.
+void refuse_options(const Arguments& arguments, std::span<const std::string_view> options,
+                    const std::string& what) {
+  for (const std::string_view option : options) {
+    if (!arguments.has(std::string(option))) continue;
+    throw StudyError("--" + std::string(option) + ": not beside " + what + ": leave it out");
+  }
+}
+
+/// The arrays in an HDF5 file.
+std::unique_ptr<EstimateSource> arrays_of(const Arguments& arguments) {
+  const std::vector<std::string>& operands = arguments.operands();
+  if (operands.size() > 1) {
+    throw StudyError(operands[1] + ": one file of arrays is judged at a time (it has all runs): " +
+                     "judge the files apart");
+  }
+  constexpr std::array<std::string_view, 4> kOfFiles = {"truth", "keep", "pair", "truth-cov"};
+  refuse_options(arguments, kOfFiles,
+                 operands.front() + " (arrays have all of their numbers in the file)");
+  const std::string stem = std::filesystem::path(operands.front()).stem().string();
+  auto arrays =
+      std::make_unique<EstimateArrays>(operands.front(), arguments.text("cell").value_or(stem));
+  constexpr std::array<std::string_view, 2> kOfStates = {"error", "anchor"};
+  if (arrays->has_errors()) {
+    refuse_options(arguments, kOfStates, operands.front() + " (it has errors, and no states)");
+  }
+  return arrays;
+}
+
+std::unique_ptr<EstimateSource> innovations_of(const Arguments& arguments,
+                                               const JudgingOptions& options) {
+  constexpr std::array<std::string_view, 8> kOfStates = {
+      "truth", "error", "pair", "anchor", "truth-cov", "interpolate", "longest-gap", "components"};
+  refuse_options(arguments, kOfStates, "--innovations (innovations need no truth and no state)");
+  return std::make_unique<InnovationFiles>(
+      pair_files(arguments.operands(), {}, arguments.text("cell")), options.gate);
+}
+
+/// The files of two estimators, the second of which is in place of the truth. Fills `pair`.
+std::unique_ptr<EstimateSource> pair_of(const Arguments& arguments,
+                                        const EstimateFiles::Reading& how, std::string& pair) {
+  constexpr std::array<std::string_view, 4> kOfTruths = {"truth", "truth-cov", "anchor", "cell"};
+  refuse_options(arguments, kOfTruths, "--pair (an estimator is in place of the truth)");
+  JudgedFiles files = pair_files(arguments.operands(), {}, std::nullopt);
+  if (files.cells.size() != 2) {
+    throw StudyError("--pair: needs two estimators (" + std::to_string(files.cells.size()) +
+                     (files.cells.size() == 1 ? " was" : " were") +
+                     " found): name the files of both, as montecarta judge --help shows");
+  }
+  EstimatorFiles& first = files.cells.front();
+  pair = first.cell + " and " + files.cells.back().cell;
+  first.cell += "-" + files.cells.back().cell;
+  check_label(first.cell);
+  files.truth = std::move(files.cells.back().of_run);
+  files.cells.pop_back();
+  return std::make_unique<EstimateFiles>(std::move(files), how);
+}
+
+/// The estimates that the operands name: CSV files, or one HDF5 file of arrays.
+std::unique_ptr<EstimateSource> source_of(const Arguments& arguments, JudgingOptions& options) {
+  const std::vector<std::string>& operands = arguments.operands();
+  if (h5::is_hdf5(operands.front())) return arrays_of(arguments);
   const std::string ending = std::filesystem::path(operands.front()).extension().string();
-  if (!h5::is_hdf5(operands.front()) &&
-      (ending == ".h5" || ending == ".hdf5" || ending == ".mat")) {
+  if (ending == ".h5" || ending == ".hdf5" || ending == ".mat") {
     throw StudyError(operands.front() + ": is there no such file, or no HDF5 file (arrays are in " +
                      "one): give its name; convert a .mat of version 7 by "
                      "experiments/convert/estimates.py");
   }
-  if (operands.size() > 1 && h5::is_hdf5(operands.front())) {
-    throw StudyError(operands[1] + ": one file of arrays is judged at a time (it has all runs): " +
-                     "judge the files apart");
-  }
-  if (arguments.has("innovations")) {
-    if (truths.empty()) {
-      return std::make_unique<InnovationFiles>(pair_files(operands, {}, arguments.text("cell")));
-    }
-    throw StudyError("--truth: not beside --innovations (innovations need no truth): leave it out");
-  }
-  if (truths.empty()) {
+  if (arguments.has("innovations")) return innovations_of(arguments, options);
+  if (options.gate) {
     throw StudyError(
-        "judge: --truth PATH... is missing (an error is estimate minus truth): name "
-        "the true states");
+        "--gate: needs --innovations (a gate is judged by each of them): leave it out");
   }
-  return std::make_unique<EstimateFiles>(pair_files(operands, truths, arguments.text("cell")),
-                                         options.match.tolerance, options.equal_times);
+  EstimateFiles::Reading how{.tolerance = options.match.tolerance,
+                             .equal_times = options.equal_times,
+                             .truth_covariance = true};
+  if (arguments.has("pair")) return pair_of(arguments, how, options.pair);
+  const std::vector<std::string> truths = arguments.texts("truth");
+  how.own_truth = own_truth_of(operands.front(), truths);
+  how.truth_covariance = options.adds_truth_covariance;
+  return std::make_unique<EstimateFiles>(pair_files(operands, truths, arguments.text("cell")), how);
 }
 
 }  // namespace
 
 int judge_command(const Arguments& arguments) {
-  const JudgingOptions options = judging_options(arguments);
+  JudgingOptions options = judging_options(arguments);
   refuse_input_as_output(options.output, arguments.operands());
   const std::unique_ptr<EstimateSource> source = source_of(arguments, options);
   const std::vector<std::string> notes = judge_estimates(*source, options);

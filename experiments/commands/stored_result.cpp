@@ -8,7 +8,7 @@
 #include "engine/records/result_description.hpp"
 #include "engine/records/sum_groups.hpp"
 #include "engine/text/visible_text.hpp"
-#include "experiments/judging/judged_study.hpp"
+#include "experiments/judging/imported_plan.hpp"
 #include "experiments/recordings/recorded_drive.hpp"
 #include "experiments/text/words.hpp"
 

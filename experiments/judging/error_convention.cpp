@@ -18,7 +18,7 @@ namespace {
 using Convention = ErrorConvention;
 
 constexpr std::array kConventions = {Convention::world, Convention::body,
-                                     Convention::right_invariant};
+                                     Convention::right_invariant, Convention::world_body};
 static_assert(kConventions.size() == kErrorConventions.size(), "all are stored, in this order");
 constexpr double kSmallTurn = 1e-5;  // [rad] below this, series of second order are exact
 
@@ -63,33 +63,58 @@ Eigen::Matrix3d exponential_jacobian_in_space(const Eigen::Vector3d& turn) {
   return Eigen::Matrix3d::Identity() + a * cross + b * cross * cross;
 }
 
-Eigen::VectorXd pose_error_in_space(Convention convention, const Eigen::VectorXd& mean,
-                                    const Eigen::VectorXd& truth) {
-  const Eigen::Quaterniond of_mean(Eigen::Vector4d(mean.tail<4>()));
-  const Eigen::Quaterniond of_truth(Eigen::Vector4d(truth.tail<4>()));
-  const Eigen::Vector3d p = mean.head<3>(), true_p = truth.head<3>();
-  Eigen::VectorXd error(6);
-  if (convention == Convention::body) {
-    error << of_mean.conjugate() * (p - true_p), rotation_vector(of_truth.conjugate() * of_mean);
-    return error;
-  }
-  const Eigen::Quaterniond turned = of_mean * of_truth.conjugate();
-  const Eigen::Vector3d turn = rotation_vector(turned);
-  if (convention == Convention::world) {
-    error << p - true_p, turn;
-    return error;
-  }
-  const Eigen::Vector3d shift = p - turned * true_p;  // mean = exp(error) truth
-  error << exponential_jacobian_in_space(turn).partialPivLu().solve(shift), turn;
-  return error;
+Eigen::Quaterniond quaternion_of(const Eigen::VectorXd& state) {
+  return Eigen::Quaterniond(Eigen::Vector4d(state.segment<4>(kQuaternionPlace)));
 }
 
-Eigen::VectorXd vector_error(const StateShape& shape, const Eigen::VectorXd& mean,
-                             const Eigen::VectorXd& truth) {
-  Eigen::VectorXd error = mean - truth;
-  for (std::size_t k = 0; k < shape.units.size(); ++k) {
-    const auto i = static_cast<Eigen::Index>(k);
-    if (shape.units[k] == "rad") error(i) = wrap(error(i));
+/// The errors of vectors in the map, of the position and the velocity, and of the rotation between
+/// an estimate and the truth.
+class ErrorsInSpace {
+ public:
+  ErrorsInSpace(Convention convention, const Eigen::VectorXd& mean, const Eigen::VectorXd& truth)
+      : convention_(convention),
+        mean_(quaternion_of(mean)),
+        turned_(mean_ * quaternion_of(truth).conjugate()),
+        turn_(rotation_vector(turned_)) {
+    const bool is_in_body = convention == Convention::body || convention == Convention::world_body;
+    rotation_ = is_in_body ? rotation_vector(quaternion_of(truth).conjugate() * mean_) : turn_;
+  }
+
+  const Eigen::Vector3d& of_rotation() const { return rotation_; }
+  Eigen::Vector3d of_vector(const Eigen::Vector3d& mean, const Eigen::Vector3d& truth) const {
+    if (convention_ == Convention::body) return mean_.conjugate() * (mean - truth);
+    if (convention_ != Convention::right_invariant) return mean - truth;
+    const Eigen::Vector3d shift = mean - turned_ * truth;  // mean = exp(error) truth
+    return exponential_jacobian_in_space(turn_).partialPivLu().solve(shift);
+  }
+
+ private:
+  Convention convention_;
+  Eigen::Quaterniond mean_, turned_;  ///< rotation of the estimate, and from the truth to it
+  Eigen::Vector3d turn_, rotation_;
+};
+
+/// Writes mean - truth of the columns from `column` on to the components from `component` on,
+/// wrapped if they are angles.
+void put_differences(const StateShape& shape, const Eigen::VectorXd& mean,
+                     const Eigen::VectorXd& truth, Eigen::Index column, Eigen::Index component,
+                     Eigen::VectorXd& error) {
+  for (; component < error.size(); ++column, ++component) {
+    const double difference = mean(column) - truth(column);
+    error(component) = is_angle(shape, column) ? wrap(difference) : difference;
+  }
+}
+
+Eigen::VectorXd error_in_space(const StateShape& shape, Convention convention,
+                               const Eigen::VectorXd& mean, const Eigen::VectorXd& truth) {
+  const ErrorsInSpace errors(convention, mean, truth);
+  Eigen::VectorXd error(static_cast<Eigen::Index>(shape.dimension()));
+  error.head<3>() = errors.of_vector(mean.head<3>(), truth.head<3>());
+  error.segment<3>(3) = errors.of_rotation();
+  put_differences(shape, mean, truth, kPoseWidth, kPoseComponents, error);
+  if (has_velocity(shape)) {
+    error.segment<3>(kPoseComponents) =
+        errors.of_vector(mean.segment<3>(kPoseWidth), truth.segment<3>(kPoseWidth));
   }
   return error;
 }
@@ -101,7 +126,8 @@ std::string name_of(Convention convention) { return stored(convention).name; }
 std::string nees_column(Convention convention) { return stored(convention).column; }
 
 std::span<const Convention> conventions_of(StateKind kind) {
-  return std::span(kConventions).first(kind == StateKind::vector ? 1 : kConventions.size());
+  if (kind == StateKind::pose_in_space) return kConventions;
+  return std::span(kConventions).first(kind == StateKind::vector ? 1 : kConventionsInPlane);
 }
 
 Eigen::VectorXd error_of(const StateShape& shape, Convention convention,
@@ -110,12 +136,14 @@ Eigen::VectorXd error_of(const StateShape& shape, Convention convention,
     case StateKind::pose:
       return pose_error(convention, mean, truth);
     case StateKind::pose_in_space:
-      return pose_error_in_space(convention, mean, truth);
+      return error_in_space(shape, convention, mean, truth);
     case StateKind::vector:
       break;
   }
   expect(convention == Convention::world, "a vector has no frame of its own");
-  return vector_error(shape, mean, truth);
+  Eigen::VectorXd error(mean.size());
+  put_differences(shape, mean, truth, 0, 0, error);
+  return error;
 }
 
 Eigen::Matrix3d covariance_in_map(Convention convention, const Eigen::Vector3d& mean,

@@ -12,13 +12,14 @@ namespace montecarta::experiments {
 
 /// Definition of the error that a covariance describes (STATISTICS 19), in the order of
 /// kErrorConventions.
-enum class ErrorConvention { world, body, right_invariant };
+enum class ErrorConvention { world, body, right_invariant, world_body };
 
-/// Name of a convention: "world", "body" or "right-invariant".
+/// Name of a convention: "world", "body", "right-invariant" or "world-body".
 std::string name_of(ErrorConvention convention);
 /// Name of the column with the NEES under a convention: "nees_world", ...
 std::string nees_column(ErrorConvention convention);
-/// The conventions that a state may have: all for a pose, only `world` for a vector.
+/// The conventions that a state may have: all for a pose in space, all but `world_body` for a pose
+/// in the plane, where that is `world`, and only `world` for a vector.
 std::span<const ErrorConvention> conventions_of(StateKind kind);
 
 /// The error {d} of an estimate under a convention that its state may have. `mean` and `truth` are

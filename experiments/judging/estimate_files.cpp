@@ -24,26 +24,35 @@ std::string sha256_of(const std::vector<std::filesystem::path>& files) {
 
 }  // namespace
 
-EstimateFiles::EstimateFiles(JudgedFiles files, double tolerance, EqualTimes equal_times)
-    : files_(std::move(files)), tolerance_(tolerance), equal_times_(equal_times) {
+EstimateFiles::EstimateFiles(JudgedFiles files, const Reading& how)
+    : files_(std::move(files)), how_(how) {
   for (const EstimatorFiles& cell : files_.cells) cells_.push_back(cell.cell);
 }
 
 std::vector<double> EstimateFiles::times(std::size_t cell, std::size_t run) const {
-  return times_in(place(cell, run), equal_times_);
+  return times_in(place(cell, run), how_.equal_times);
 }
 
 StateRows EstimateFiles::estimates(std::size_t cell, std::size_t run) const {
   const std::filesystem::path path = place(cell, run);
-  StateRows rows = read_estimates(path, equal_times_);
+  StateRows rows = read_estimates(path, how_.equal_times);
   if (const auto beside = innovations_beside(path)) {
-    read_innovations(*beside, path, tolerance_, rows);
+    read_innovations(*beside, path, how_.tolerance, rows);
   }
   return rows;
 }
 
 StateRows EstimateFiles::truth(std::size_t run, const StateShape& shape) const {
-  return read_truth(files_.truth[run], shape, equal_times_);
+  if (!has_errors()) {
+    return read_truth(files_.truth[run], shape,
+                      {.equal = how_.equal_times,
+                       .with_covariance = how_.truth_covariance,
+                       .prefix = how_.own_truth == OwnTruth::columns ? kTruthPrefix : ""});
+  }
+  StateRows rows = read_estimates(files_.truth[run], how_.equal_times);
+  rows.covariance.clear();
+  for (Eigen::VectorXd& error : rows.state) error.setZero();
+  return rows;
 }
 
 TextPairs EstimateFiles::contents() const {

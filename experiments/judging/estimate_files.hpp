@@ -9,11 +9,17 @@
 
 namespace montecarta::experiments {
 
-/// Estimates in CSV files, one for each run, with innovations beside them.
+/// Estimates in CSV files, one for each run, with innovations beside them. The truths are in files
+/// of their own, or in columns of the estimates; or the files have errors.
 class EstimateFiles : public EstimateSource {
  public:
-  /// `tolerance` [s] is that of the times of innovations.
-  EstimateFiles(JudgedFiles files, double tolerance, EqualTimes equal_times);
+  struct Reading {
+    double tolerance = 0.0;  ///< [s] of the times of innovations
+    EqualTimes equal_times = EqualTimes::refuse;
+    OwnTruth own_truth = OwnTruth::none;
+    bool truth_covariance = false;  ///< whether truths have covariances, which are read
+  };
+  EstimateFiles(JudgedFiles files, const Reading& how);
 
   const std::vector<std::string>& cells() const override { return cells_; }
   const std::vector<std::uint64_t>& runs() const override { return files_.runs; }
@@ -24,15 +30,14 @@ class EstimateFiles : public EstimateSource {
   std::vector<double> times(std::size_t cell, std::size_t run) const override;
   StateRows estimates(std::size_t cell, std::size_t run) const override;
   StateRows truth(std::size_t run, const StateShape& shape) const override;
-  bool has_errors() const override { return false; }
+  bool has_errors() const override { return how_.own_truth == OwnTruth::errors; }
   TextPairs contents() const override;
   std::vector<std::string> notes() const override;
 
  private:
   JudgedFiles files_;
   std::vector<std::string> cells_;
-  double tolerance_;
-  EqualTimes equal_times_;
+  Reading how_;
 };
 
 }  // namespace montecarta::experiments

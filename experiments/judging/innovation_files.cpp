@@ -5,6 +5,9 @@
 #include "experiments/judging/innovation_rows.hpp"
 #include "experiments/judging/time_units.hpp"
 
+#include <set>
+#include <utility>
+
 namespace montecarta::experiments {
 
 namespace {
@@ -24,6 +27,26 @@ StateRows times_of(const std::filesystem::path& path) {
 
 }  // namespace
 
+InnovationFiles::InnovationFiles(JudgedFiles files, std::optional<double> gate)
+    : EstimateFiles(std::move(files), {}), gate_(gate) {
+  for (std::size_t c = 0; c < EstimateFiles::cells().size(); ++c) {
+    const std::string& label = EstimateFiles::cells()[c];
+    labels_.push_back(label);
+    parts_.push_back({c, ""});
+    std::set<std::string> sensors;
+    for (std::size_t run = 0; run < runs().size(); ++run) {
+      for (std::string& sensor : sensors_in(EstimateFiles::place(c, run)))
+        sensors.insert(std::move(sensor));
+    }
+    if (sensors.size() < 2) continue;
+    for (const std::string& sensor : sensors) {
+      labels_.push_back(label + "." + sensor);
+      check_label(labels_.back());
+      parts_.push_back({c, sensor});
+    }
+  }
+}
+
 std::vector<double> InnovationFiles::times(std::size_t cell, std::size_t run) const {
   return times_of(place(cell, run)).time;
 }
@@ -31,7 +54,20 @@ std::vector<double> InnovationFiles::times(std::size_t cell, std::size_t run) co
 StateRows InnovationFiles::estimates(std::size_t cell, std::size_t run) const {
   StateRows rows = times_of(place(cell, run));
   require_seconds(rows, place(cell, run));
-  read_innovations(place(cell, run), place(cell, run), 0.0, rows);
+  read_innovations(place(cell, run), place(cell, run), 0.0, rows,
+                   {.sensor = parts_[cell].sensor, .gate = gate_, .with_components = true});
+  return rows;
+}
+
+StateRows InnovationFiles::truth(std::size_t run, const StateShape& shape) const {
+  std::set<double> all;
+  for (std::size_t c = 0; c < EstimateFiles::cells().size(); ++c) {
+    const std::vector<double> some = times_of(EstimateFiles::place(c, run)).time;
+    all.insert(some.begin(), some.end());
+  }
+  StateRows rows{.shape = shape, .time = {all.begin(), all.end()}};
+  rows.state.assign(all.size(), Eigen::VectorXd::Zero(static_cast<Eigen::Index>(shape.width())));
+  rows.line.resize(all.size());
   return rows;
 }
 

@@ -3,19 +3,43 @@
 
 #include "experiments/judging/estimate_files.hpp"
 
+#include <optional>
+#include <string>
+#include <vector>
+
 namespace montecarta::experiments {
 
 /// Innovations alone in CSV files, one for each run, without states and truths. Their columns are
-/// those of read_innovations().
+/// those of read_innovations(). If they name several sensors, each is an estimator too, called
+/// CELL.SENSOR.
 class InnovationFiles final : public EstimateFiles {
  public:
-  explicit InnovationFiles(JudgedFiles files)
-      : EstimateFiles(std::move(files), 0.0, EqualTimes::refuse) {}
+  /// `gate` is that of InnovationChoice.
+  InnovationFiles(JudgedFiles files, std::optional<double> gate);
 
+  const std::vector<std::string>& cells() const override { return labels_; }
+  std::filesystem::path place(std::size_t cell, std::size_t run) const override {
+    return EstimateFiles::place(parts_[cell].files, run);
+  }
   /// The times of the file; rows of one time are one scan.
   std::vector<double> times(std::size_t cell, std::size_t run) const override;
-  /// Rows without a state.
+  /// Rows whose states are the innovations if their components are known, and else rows without a
+  /// state.
   StateRows estimates(std::size_t cell, std::size_t run) const override;
+  /// Zeros at all times of the run.
+  StateRows truth(std::size_t run, const StateShape& shape) const override;
+  bool has_errors() const override { return true; }
+
+ private:
+  /// The innovations of one cell.
+  struct Part {
+    std::size_t files;   ///< index of the cell whose files it is read from
+    std::string sensor;  ///< empty: all sensors
+  };
+
+  std::vector<std::string> labels_;  ///< {cell}
+  std::vector<Part> parts_;          ///< {cell}
+  std::optional<double> gate_;
 };
 
 }  // namespace montecarta::experiments

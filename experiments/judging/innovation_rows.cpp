@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/judging/innovation_rows.hpp"
 
+#include "analysis/statistics/distributions.hpp"
 #include "engine/errors.hpp"
 #include "engine/numbers/angle.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <utility>
+#include <vector>
 
 namespace montecarta::experiments {
 namespace {
@@ -40,7 +44,79 @@ void count_unwrapped(const CsvRows& file, const EstimateFields& fields, StateRow
   }
 }
 
+bool is_of_sensor(const CsvRows& file, const EstimateFields& fields, const std::string& sensor) {
+  return sensor.empty() || (fields.sensor && file.field(*fields.sensor) == sensor);
+}
+
+/// The NIS of a row, as it would be without the gate.
+double without_gate(const CsvRows& file, double nis, std::uint32_t dof,
+                    std::optional<double> gate) {
+  if (!gate || dof == 0 || std::isnan(nis)) return nis;
+  constexpr double kRounding = 1e-6;
+  if (nis > *gate * (1.0 + kRounding)) {
+    file.refuse("a NIS of " + to_text(nis) + " is beyond --gate " + to_text(*gate) +
+                " (which the filter leaves out): leave it out, or give the gate that it has");
+  }
+  return analysis::chi_squared_before_gate(nis, dof, *gate);
+}
+
+/// Sums of the innovations of each estimate.
+class InnovationsOfRows {
+ public:
+  InnovationsOfRows(std::size_t rows, const StateShape& shape)
+      : shape_(shape), count_(rows), sum_(rows), covariance_(rows) {
+    shape_.kind = StateKind::vector;
+    shape_.columns = shape_.components;
+  }
+  /// Adds the current row, scaled by `factor`, to those of estimate `k`.
+  void add(const CsvRows& file, const EstimateFields& fields, std::size_t k, double factor) {
+    const Eigen::VectorXd one = factor * state_in(file, fields.state, fields.shape);
+    const Eigen::MatrixXd P = covariance_in(file, fields);
+    if (count_[k]++ == 0) {
+      sum_[k] = one;
+      covariance_[k] = P;
+    } else {
+      sum_[k] += one;
+      covariance_[k] += P;
+    }
+  }
+  /// Fills the states of `rows`, of which those without an innovation go.
+  void put(StateRows& rows) const {
+    StateRows kept{.shape = shape_};
+    for (std::size_t k = 0; k < count_.size(); ++k) {
+      if (count_[k] == 0.0) continue;
+      kept.time.push_back(rows.time[k]);
+      kept.line.push_back(rows.line[k]);
+      kept.nis.push_back(rows.nis[k]);
+      kept.nis_dof.push_back(rows.nis_dof[k]);
+      kept.state.emplace_back(sum_[k] / std::sqrt(count_[k]));
+      kept.covariance.emplace_back(covariance_[k] / count_[k]);
+    }
+    kept.unwrapped_innovations = rows.unwrapped_innovations;
+    kept.first_unwrapped = rows.first_unwrapped;
+    rows = std::move(kept);
+  }
+
+ private:
+  StateShape shape_;
+  std::vector<double> count_;  ///< {row}
+  std::vector<Eigen::VectorXd> sum_;
+  std::vector<Eigen::MatrixXd> covariance_;
+};
+
 }  // namespace
+
+std::vector<std::string> sensors_in(const fs::path& path) {
+  CsvRows file(path);
+  const EstimateFields fields = innovation_fields(file.columns(), file.place());
+  std::set<std::string> sensors;
+  while (fields.sensor && file.next()) {
+    const std::string sensor(file.field(*fields.sensor));
+    if (sensor.empty()) file.refuse("no sensor (the column names it): write its name");
+    sensors.insert(sensor);
+  }
+  return {sensors.begin(), sensors.end()};
+}
 
 std::optional<fs::path> innovations_beside(const fs::path& estimates) {
   const std::string wanted = "estimate";
@@ -55,26 +131,35 @@ std::optional<fs::path> innovations_beside(const fs::path& estimates) {
 }
 
 void read_innovations(const fs::path& path, const fs::path& estimates, double tolerance,
-                      StateRows& rows) {
+                      StateRows& rows, const InnovationChoice& choice) {
   if (!rows.nis.empty()) {
     throw StudyError(path.string() + ": innovations, and " + estimates.string() +
                      " has nis too (which one is it?): remove one");
   }
   CsvRows file(path);
   const EstimateFields fields = innovation_fields(file.columns(), file.place());
+  const bool has_components = choice.with_components && !fields.nis;
+  InnovationsOfRows components(has_components ? rows.time.size() : 0, fields.shape);
   std::vector<double> nis(rows.time.size());
   std::vector<std::uint32_t> dof(rows.time.size());
   while (file.next()) {
     const double time = file.time(CsvRows::Order::not_earlier);
-    const auto [row_nis, row_dof] = nis_in(file, fields);
+    if (!is_of_sensor(file, fields, choice.sensor)) continue;
+    const auto [as_given, row_dof] = nis_in(file, fields);
+    const double row_nis = without_gate(file, as_given, row_dof, choice.gate);
     count_unwrapped(file, fields, rows);
     if (rows.time.empty()) continue;
     const std::size_t k = place_in(rows, time, tolerance, file, estimates);
     nis[k] += row_nis;
     dof[k] += row_dof;
+    if (has_components) {
+      const double factor = as_given > 0.0 ? std::sqrt(row_nis / as_given) : 1.0;
+      components.add(file, fields, k, factor);
+    }
   }
   rows.nis = std::move(nis);
   rows.nis_dof = std::move(dof);
+  if (has_components) components.put(rows);
 }
 
 }  // namespace montecarta::experiments

@@ -5,6 +5,8 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace montecarta::experiments {
 
@@ -12,13 +14,28 @@ namespace montecarta::experiments {
 /// `estimate`, e.g. innovation_ekf.csv for estimate_ekf.csv. nullopt if it does not exist.
 std::optional<std::filesystem::path> innovations_beside(const std::filesystem::path& estimates);
 
+/// Which innovations of a file are read, and what they mean.
+struct InnovationChoice {
+  std::string sensor = {};  ///< only those of this sensor; empty: all
+  /// Limit of the NIS of a row, beyond which the filter has left out its innovation. The NIS of the
+  /// others is put on the scale of a whole chi-square variable (STATISTICS (9.3)).
+  std::optional<double> gate = {};
+  /// Whether to fill state and covariance of `rows` too, if the file has components: with the sum
+  /// of the innovations of one time, divided by the root of their number, and its covariance.
+  bool with_components = false;
+};
+
 /// Reads innovations into `rows`, which holds the estimates of the file `estimates`. The file is
 /// CSV with `time_s`, then either `nis,nis_dof`, or the components of the innovation and cov_A_B of
 /// their covariance, as in a file of estimates. Rows with the same time are parts of one scan and
 /// are added up. Estimates without a row have observed nothing. The NIS is NaN if the covariance is
 /// not positive definite. Angles beyond pi are used as they are, and counted. Throws StudyError
-/// with file, line and remedy, also if no estimate has the time of a row within `tolerance` [s].
+/// with file, line and remedy, also if no estimate has the time of a row within `tolerance` [s], or
+/// a NIS is beyond the gate.
 void read_innovations(const std::filesystem::path& path, const std::filesystem::path& estimates,
-                      double tolerance, StateRows& rows);
+                      double tolerance, StateRows& rows, const InnovationChoice& choice = {});
+
+/// The sensors in a file of innovations, in alphabetical order; empty if it has no such column.
+std::vector<std::string> sensors_in(const std::filesystem::path& path);
 
 }  // namespace montecarta::experiments

@@ -4,6 +4,7 @@
 #include "analysis/run/nees.hpp"
 #include "engine/errors.hpp"
 #include "engine/records/posix_file.hpp"
+#include "experiments/judging/imported_plan.hpp"
 #include "experiments/judging/likely_mistakes.hpp"
 #include "experiments/judging/scan_clock.hpp"
 #include "experiments/text/words.hpp"
@@ -40,8 +41,8 @@ void require_alike(const StateRows& rows, const fs::path& path, const StateRows&
 /// The estimates of one file, with the scan and the truth of each row.
 struct MatchedRows {
   StateRows rows;
-  std::vector<std::size_t> scans;                      ///< {row}
-  std::vector<std::optional<Eigen::VectorXd>> truths;  ///< {row} nullopt: the estimate is left out
+  std::vector<std::size_t> scans;                ///< {row}
+  std::vector<std::optional<TrueState>> truths;  ///< {row} nullopt: the estimate is left out
 };
 
 Pose pose_in(const Eigen::VectorXd& state) { return {state(0), state(1), wrap(state(2))}; }
@@ -55,12 +56,13 @@ void put_rows(const Eigen::MatrixXd& matrix, std::size_t scan, std::span<double>
   }
 }
 
+constexpr double kUnknownCost = std::numeric_limits<double>::quiet_NaN();
+
 /// Marks a run as complete, or as failed if it ends although other runs and its truth go on. If
 /// runs have clocks of their own, only a run without estimates is known to have failed. `truth` is
 /// nullptr if all scans have one.
 void end_run(const MatchedRows& run, const TruthPath* truth, const ScanClock& clock,
              std::size_t cell, RunRecord& record) {
-  constexpr double kUnknownCost = std::numeric_limits<double>::quiet_NaN();
   const std::size_t next = run.scans.empty() ? 0 : run.scans.back() + 1;
   const auto goes_on = [&] {
     const auto missed = clock.missed_after(run.rows.time.back(), cell);
@@ -81,7 +83,7 @@ void put_conventions(const MatchedRows& run, std::size_t row, RunRecord& record)
     const auto column = record.layout().find(nees_column(convention));
     if (!column) return;
     const Eigen::VectorXd error =
-        error_of(shape, convention, run.rows.state[row], *run.truths[row]);
+        error_of(shape, convention, run.rows.state[row], run.truths[row]->state);
     const analysis::Nees nees = analysis::imported_nees(error, run.rows.covariance[row]);
     record.column<double>(*column)[run.scans[row]] =
         analysis::on_full_scale(nees, shape.dimension());
@@ -95,7 +97,7 @@ void put_pose(const MatchedRows& run, std::size_t row, const Pose& truth,
   const auto column = [&](const char* name) {
     return record.column<double>(*record.layout().find(name));
   };
-  const Pose own = pose_in(*run.truths[row]);
+  const Pose own = pose_in(run.truths[row]->state);
   Pose mean = pose_in(run.rows.state[row]);
   mean.x += truth.x - own.x;
   mean.y += truth.y - own.y;
@@ -104,24 +106,6 @@ void put_pose(const MatchedRows& run, std::size_t row, const Pose& truth,
   put_rows(Eigen::Vector3d(mean.x, mean.y, mean.heading), s, column("pose_mean"));
   put_rows(covariance_in_map(convention, run.rows.state[row], run.rows.covariance[row]), s,
            column("pose_covariance"));
-}
-
-/// Indices of the components that are judged: those of `wanted`, or all. Throws StudyError with the
-/// known names if there is no such component.
-std::vector<Eigen::Index> judged_components(const StateShape& shape,
-                                            const std::vector<std::string>& wanted) {
-  std::vector<Eigen::Index> judged;
-  for (const std::string& name : wanted.empty() ? shape.components : wanted) {
-    const auto found = std::ranges::find(shape.components, name);
-    if (found == shape.components.end()) {
-      throw StudyError("--components: no component '" + excerpt(name) + "' (the state has " +
-                       joined(shape.components, ",") + "): choose among them");
-    }
-    judged.push_back(found - shape.components.begin());
-  }
-  std::ranges::sort(judged);
-  judged.erase(std::unique(judged.begin(), judged.end()), judged.end());
-  return judged;
 }
 
 /// The record of one run of one estimator, with the errors of the `judged` components. Scans
@@ -141,7 +125,7 @@ RunRecord record_of(const RecordLayout& layout, const MatchedRows& run,
     }
     if (!run.truths[row]) continue;
     const Eigen::VectorXd error =
-        error_of(rows.shape, convention, rows.state[row], *run.truths[row])(judged);
+        error_of(rows.shape, convention, rows.state[row], run.truths[row]->state)(judged);
     const Eigen::MatrixXd covariance = rows.covariance[row](judged, judged);
     put_rows(error, s, column("error"));
     put_rows(covariance, s, column("error_covariance"));
@@ -160,7 +144,7 @@ std::vector<Pose> truths_of_scans(const std::vector<MatchedRows>& cells, std::si
   for (const MatchedRows& cell : cells) {
     for (std::size_t row = 0; row < cell.scans.size(); ++row) {
       Pose& truth = truths[cell.scans[row]];
-      if (cell.truths[row] && std::isnan(truth.x)) truth = pose_in(*cell.truths[row]);
+      if (cell.truths[row] && std::isnan(truth.x)) truth = pose_in(cell.truths[row]->state);
     }
   }
   return truths;
@@ -185,14 +169,17 @@ struct Overview {
   ScanClock clock;
 };
 
-Overview overview_of(const EstimateSource& source, const TimeMatch& match) {
+/// The first estimate is left out if it is the anchor of its truth.
+Overview overview_of(const EstimateSource& source, const JudgingOptions& options) {
   std::vector<TimesOfRuns> times(source.cells().size());
   std::pair<std::size_t, std::size_t> longest;
   std::size_t most = 0;
   for (std::size_t c = 0; c < source.cells().size(); ++c) {
     for (std::size_t run = 0; run < source.runs().size(); ++run) {
       times[c].push_back(source.times(c, run));
-      require_tolerance(source.place(c, run), times[c].back(), match);
+      require_tolerance(source.place(c, run), times[c].back(), options.match);
+      if (options.anchor && !times[c].back().empty())
+        times[c].back().erase(times[c].back().begin());
       if (times[c].back().size() <= most) continue;
       longest = {c, run};
       most = times[c].back().size();
@@ -200,7 +187,9 @@ Overview overview_of(const EstimateSource& source, const TimeMatch& match) {
   }
   const auto [c, run] = longest;
   StateRows rows = source.estimates(c, run);
-  if (most > 0) return {source.place(c, run), std::move(rows), ScanClock(times, match.tolerance)};
+  if (most > 0) {
+    return {source.place(c, run), std::move(rows), ScanClock(times, options.match.tolerance)};
+  }
   throw StudyError(source.place(c, run).string() +
                    ": no rows behind the header, nor in any other file (nothing to judge): write "
                    "one row for each time");
@@ -251,29 +240,39 @@ std::uint64_t missing_in(const MatchedRows& run, const ScanClock& clock) {
   return end - run.scans.size();
 }
 
+/// The innovations of all runs, none of which may be those of an earlier one.
+class SeenInnovations {
+ public:
+  /// Throws StudyError if an earlier run of the estimator `cell` has the same NIS.
+  void refuse_repeat(std::size_t cell, const StateRows& rows, const fs::path& path) {
+    const auto [earlier, is_new] = seen_.try_emplace({cell, rows.nis}, path);
+    if (is_new || rows.nis.size() < 2) return;
+    throw StudyError(path.string() + ": has the innovations of " + earlier->second.string() +
+                     ", number by number (runs must be independent): give each run once");
+  }
+
+ private:
+  std::map<std::pair<std::size_t, std::vector<double>>, fs::path> seen_;
+};
+
 /// Writes innovations alone, which have no truth. Returns notes. Throws StudyError if a run has the
 /// innovations of an earlier one.
 std::vector<std::string> write_innovations(const EstimateSource& source, const Overview& all,
                                            const StudyPlan& plan, ResultWriter& writer) {
   const std::vector<RecordLayout> layouts = layouts_of(plan, Detail::usual);
   UnwrappedInnovations unwrapped;
-  std::map<std::pair<std::size_t, std::vector<double>>, fs::path> known;
+  SeenInnovations seen;
   for (std::size_t run = 0; run < source.runs().size(); ++run) {
     for (std::size_t c = 0; c < source.cells().size(); ++c) {
       StateRows rows = source.estimates(c, run);
       unwrapped.add(rows);
-      const auto [earlier, is_new] = known.try_emplace({c, rows.nis}, source.place(c, run));
-      if (!is_new && rows.nis.size() > 1) {
-        throw StudyError(source.place(c, run).string() + ": has the innovations of " +
-                         earlier->second.string() +
-                         ", number by number (runs must be independent): give each run once");
-      }
+      seen.refuse_repeat(c, rows, source.place(c, run));
       std::vector<std::size_t> scans = all.clock.scans_of(rows.time);
       const std::size_t n = rows.time.size();
       const MatchedRows matched{std::move(rows), std::move(scans),
-                                std::vector<std::optional<Eigen::VectorXd>>(n)};
+                                std::vector<std::optional<TrueState>>(n)};
       RunRecord record = record_of(layouts[c], matched, {}, ErrorConvention::world, {});
-      record.mark_complete(std::numeric_limits<double>::quiet_NaN());
+      record.mark_complete(kUnknownCost);
       writer.write(c, run, record);
     }
   }
@@ -282,20 +281,84 @@ std::vector<std::string> write_innovations(const EstimateSource& source, const O
 
 /// What is said of all runs.
 struct RunNotes {
+  const JudgingOptions* options;
+  double share_at_anchor = 0.0;
   UnwrappedInnovations unwrapped = {};
+  SeenInnovations seen = {};
   LikelyMistakes mistakes;
   TruthUse use = {};
   std::uint64_t missing = 0;
 
+  /// A note on covariances that describe more than the error since the anchor.
+  std::vector<std::string> notes_on_anchor() const {
+    constexpr double kMostShare = 0.01;
+    if (share_at_anchor <= kMostShare) return {};
+    return {"at the first estimate, onto which --anchor moves the truth, a variance is " +
+            to_text(std::round(100.0 * share_at_anchor)) +
+            " % of the last one (it describes more " +
+            "than the error since then): the verdict leans to conservative"};
+  }
+
   std::vector<std::string> all(const EstimateSource& source, const Overview& overview) const {
     std::vector<std::string> notes = source.notes();
-    for (const auto& some :
-         {unwrapped.notes(), notes_on_times(overview, missing), use.notes(), mistakes.notes()}) {
+    for (const auto& some : {unwrapped.notes(), notes_on_times(overview, missing), use.notes(),
+                             notes_on_anchor(), mistakes.notes()}) {
       notes.insert(notes.end(), some.begin(), some.end());
     }
     return notes;
   }
 };
+
+/// Removes the first estimate of a run.
+template <class Truths>
+void remove_first(StateRows& rows, Truths& truths) {
+  const auto remove_from = [](auto& list) {
+    if (!list.empty()) list.erase(list.begin());
+  };
+  remove_from(rows.time);
+  remove_from(rows.state);
+  remove_from(rows.covariance);
+  remove_from(rows.nis);
+  remove_from(rows.nis_dof);
+  remove_from(rows.line);
+  remove_from(truths);
+}
+
+/// The covariance {d, d} that no difference of two errors with the covariances `a` and `b` exceeds,
+/// whatever their correlation is (Young): (1 + t) a + (1 + 1/t) b, with a t that makes it small.
+Eigen::MatrixXd largest_covariance_of_difference(const Eigen::MatrixXd& a,
+                                                 const Eigen::MatrixXd& b) {
+  double share_a = 0.0, share_b = 0.0;
+  for (Eigen::Index i = 0; i < a.rows(); ++i) {
+    const double sum = a(i, i) + b(i, i);
+    if (!(sum > 0.0)) continue;
+    share_a += a(i, i) / sum;
+    share_b += b(i, i) / sum;
+  }
+  if (!(share_a > 0.0 && share_b > 0.0)) return a + b;
+  const double t = std::sqrt(share_b / share_a);
+  return (1.0 + t) * a + (1.0 + 1.0 / t) * b;
+}
+
+/// The truths {row} of a run, moved onto its anchor if there is one, which `rows` lose. The
+/// covariances of their own errors are added to those of `rows`.
+std::vector<std::optional<TrueState>> truths_for(StateRows& rows, const fs::path& path,
+                                                 const TruthPath& truth, RunNotes& notes) {
+  auto truths = truth.at(rows, path, notes.use);
+  if (const auto anchor = notes.options->anchor) {
+    notes.share_at_anchor = std::max(notes.share_at_anchor, share_at_anchor(*anchor, rows));
+    move_to_anchor(*anchor, rows, path, truths);
+    remove_first(rows, truths);
+  }
+  for (std::size_t row = 0; row < truths.size(); ++row) {
+    if (!truths[row] || truths[row]->covariance.size() == 0) continue;
+    const Eigen::MatrixXd& other = truths[row]->covariance;
+    rows.covariance[row] = notes.options->pair.empty()
+                               ? Eigen::MatrixXd(rows.covariance[row] + other)
+                               : largest_covariance_of_difference(rows.covariance[row], other);
+  }
+  return truths;
+}
 
 /// {cell} The estimates of a run with their scans and truths.
 std::vector<MatchedRows> matched_run(const EstimateSource& source, std::size_t run,
@@ -306,12 +369,14 @@ std::vector<MatchedRows> matched_run(const EstimateSource& source, std::size_t r
     const fs::path path = source.place(c, run);
     StateRows rows = source.estimates(c, run);
     notes.unwrapped.add(rows);
+    if (notes.options->are_innovations) notes.seen.refuse_repeat(c, rows, path);
     require_alike(rows, path, all.rows, all.path);
     notes.mistakes.add(c, rows, path, truth_rows);
+    auto truths = truths_for(rows, path, truth, notes);
     std::vector<std::size_t> scans = all.clock.scans_of(rows.time);
-    auto truths = truth.at(rows, path, notes.use);
     cells.push_back({std::move(rows), std::move(scans), std::move(truths)});
-    notes.missing += missing_in(cells.back(), all.clock);
+    // A scan without an innovation has observed nothing, and misses none.
+    if (!notes.options->are_innovations) notes.missing += missing_in(cells.back(), all.clock);
   }
   return cells;
 }
@@ -322,7 +387,9 @@ std::vector<std::string> write_runs(const EstimateSource& source, const JudgingO
   if (!has_states(all)) return write_innovations(source, all, plan, writer);
   const std::vector<RecordLayout> layouts = layouts_of(plan, Detail::usual);
   const auto judged = judged_components(all.rows.shape, options.components);
-  RunNotes notes{.mistakes = LikelyMistakes(source.cells(), *options.convention)};
+  RunNotes notes{
+      .options = &options,
+      .mistakes = LikelyMistakes(source.cells(), *options.convention, options.anchor.has_value())};
   for (std::size_t run = 0; run < source.runs().size(); ++run) {
     const StateRows truth_rows = source.truth(run, all.rows.shape);
     notes.mistakes.add_truth(truth_rows, source.truth_place(run));
@@ -336,7 +403,11 @@ std::vector<std::string> write_runs(const EstimateSource& source, const JudgingO
     }
     for (std::size_t c = 0; c < cells.size(); ++c) {
       RunRecord record = record_of(layouts[c], cells[c], scan_truths, *options.convention, judged);
-      end_run(cells[c], source.has_errors() ? nullptr : &truth, all.clock, c, record);
+      if (options.are_innovations) {
+        record.mark_complete(kUnknownCost);
+      } else {
+        end_run(cells[c], source.has_errors() ? nullptr : &truth, all.clock, c, record);
+      }
       writer.write(c, run, record);
     }
   }
@@ -357,10 +428,11 @@ ErrorConvention stated_error(const Overview& all, std::optional<ErrorConvention>
   if (!said) {
     throw StudyError(
         "judge: --error is missing (the verdict depends on the error that the covariance "
-        "describes): give --error world, body or right-invariant, which montecarta judge --help "
-        "explains");
+        "describes): give --error world, body, right-invariant or, in space, world-body, which "
+        "montecarta judge --help explains");
   }
   if (std::ranges::find(known, *said) != known.end()) return *said;
+  if (known.size() > 1) return ErrorConvention::world;  // in the plane, world-body is world
   throw StudyError("--error " + name_of(*said) + ": not of a vector (" + all.path.string() +
                    " has no pose, and only poses have frames" +
                    (likeness.empty() ? "" : "; " + likeness) +
@@ -368,106 +440,16 @@ ErrorConvention stated_error(const Overview& all, std::optional<ErrorConvention>
                    "by --error world");
 }
 
-/// A source of drives that has only the times of the estimates.
-class ImportedDrives final : public DriveSource {
- public:
-  ImportedDrives(std::vector<double> times, bool has_truth) {
-    itinerary_.step_time = std::move(times);
-    itinerary_.scan_step.resize(itinerary_.step_time.size());
-    std::iota(itinerary_.scan_step.begin(), itinerary_.scan_step.end(), 0U);
-    itinerary_.has_truth = has_truth;
-  }
-  const Itinerary& itinerary() const override { return itinerary_; }
-  void generate(std::uint64_t /*run*/, Drive& /*drive*/) const override {
-    expect(false, "the drive of an imported estimate was asked for");
-  }
-
- private:
-  Itinerary itinerary_;
-};
-
-TextPairs import_settings(const StateShape& shape, const JudgingOptions& options) {
-  if (shape.dimension() == 0) return {{"state", "innovations"}};
-  std::vector<std::string> components, units;
-  for (const Eigen::Index k : judged_components(shape, options.components)) {
-    components.push_back(shape.components[static_cast<std::size_t>(k)]);
-    units.push_back(shape.units[static_cast<std::size_t>(k)]);
-  }
-  const bool is_whole = components.size() == shape.dimension();
-  return {{"state", name_of(is_whole ? shape.kind : StateKind::vector)},
-          {"error", name_of(*options.convention)},
-          {"components", joined(components)},
-          {"units", joined(units)}};
-}
-
-std::string import_text(const EstimateSource& source, const TextPairs& settings) {
-  const std::vector<std::uint64_t>& runs = source.runs();
-  TextPairs all = settings;
-  all.emplace_back("runs", std::to_string(runs.front()) + ":" + std::to_string(runs.back() + 1));
-  std::ranges::copy(source.contents(), std::back_inserter(all));
-  std::string text = std::string(kImportedSection) + "\n";
-  for (const auto& [name, value] : all) text += name + " = " + value + "\n";
-  return text;
-}
-
-Cell imported_cell(const std::string& label, const StateRows& first, std::size_t components,
-                   const TextPairs& settings) {
-  const bool is_whole = components == first.shape.dimension();
-  Cell cell;
-  cell.label = label;
-  cell.filter = "imported";
-  cell.long_name = label + " (imported)";
-  cell.imported =
-      ImportedError{.components = components,
-                    .has_innovations = !first.nis.empty(),
-                    .has_conventions = is_whole && conventions_of(first.shape.kind).size() > 1,
-                    .has_pose = is_whole && first.shape.kind == StateKind::pose};
-  cell.settings = settings;
-  return cell;
-}
-
-/// The plan that defines the layout of the result file; it cannot be run. The text of the plan
-/// contains the SHA-256 of all estimates, so that results of the same estimates, judged with the
-/// same options, have the same study_sha256.
-StudyPlan imported_plan(const EstimateSource& source, const Overview& all_files,
-                        const JudgingOptions& options) {
-  const StateRows& first = all_files.rows;
-  const TextPairs settings = import_settings(first.shape, options);
-  const std::size_t components = judged_components(first.shape, options.components).size();
-  StudyPlan plan;
-  plan.name = options.output.stem().string();
-  plan.title = "Imported estimates: " + plan.name;
-  plan.first_run = source.runs().front();
-  plan.last_run = plan.runs = source.runs().back() + 1;
-  plan.columns = {.ancestry = false, .scans_only = true};
-  for (const std::string& label : source.cells())
-    plan.cells.push_back(imported_cell(label, first, components, settings));
-  plan.drives = std::make_shared<ImportedDrives>(all_files.clock.times(),
-                                                 plan.cells.front().imported->has_pose);
-  plan.scenario = {{"kind", "imported"},
-                   {"tolerance", to_text(options.match.tolerance)},
-                   {"interpolate", options.match.interpolate ? "yes" : "no"}};
-  if (options.equal_times != EqualTimes::refuse) {
-    plan.scenario.emplace_back("keep",
-                               options.equal_times == EqualTimes::keep_first ? "first" : "last");
-  }
-  TextPairs all = settings;
-  all.insert(all.end(), plan.scenario.begin() + 1, plan.scenario.end());
-  plan.resolved_text = import_text(source, all);
-  if (options.within) plan.resolved_text += "[study]\nwithin = " + to_text(*options.within) + "\n";
-  return plan;
-}
-
 }  // namespace
 
 std::vector<std::string> judge_estimates(const EstimateSource& source,
                                          const JudgingOptions& given) {
-  const Overview all = overview_of(source, given.match);
+  const Overview all = overview_of(source, given);
   JudgingOptions options = given;
   options.convention = source.has_errors() || !has_states(all)
                            ? ErrorConvention::world
                            : stated_error(all, given.convention);
-  const StudyPlan plan = imported_plan(source, all, options);
+  const StudyPlan plan = imported_plan(source, all.rows, all.clock.times(), options);
   ResultWriter writer =
       ResultWriter::create(options.output, plan, options.provenance, options.existing);
   try {

@@ -32,11 +32,12 @@ bool is_huge(const Eigen::VectorXd& variances, Eigen::Index i) {
       variances, [&](double other) { return other > 0.0 && other <= variances(i) / kFarApart; });
 }
 
-/// The variances of a vector may have units so different that a small one says nothing, unless it
-/// is a power of ten.
+/// The variances of what is no pose may have units so different that a small one says nothing,
+/// unless it is a power of ten.
 bool is_tiny(const Eigen::VectorXd& variances, Eigen::Index i, StateKind kind) {
   if (!(variances(i) > 0.0 && variances(i) <= kMostTiny)) return false;
-  if (kind == StateKind::vector && !is_power_of_ten(variances(i))) return false;
+  const bool is_of_pose = kind != StateKind::vector && i < kPoseComponents;
+  if (!is_of_pose && !is_power_of_ten(variances(i))) return false;
   return std::ranges::any_of(variances, [&](double other) {
     return other >= variances(i) * kFarApart && other < kLeastHuge;
   });
@@ -58,9 +59,9 @@ std::size_t nearest_row(const StateRows& truth, double time) {
 
 /// The pose in space of numbers whose quaternion is w, x, y, z.
 Eigen::VectorXd from_w_first(const Eigen::VectorXd& pose) {
-  const Eigen::VectorXd q = pose.tail<4>();
+  const Eigen::Vector4d q = pose.segment<4>(kQuaternionPlace);
   Eigen::VectorXd turned = pose;
-  turned.tail<4>() << q(1), q(2), q(3), q(0);
+  turned.segment<4>(kQuaternionPlace) << q(1), q(2), q(3), q(0);
   return turned;
 }
 
@@ -82,15 +83,16 @@ std::string remaining(const StateShape& shape, const std::vector<std::string>& n
 
 }  // namespace
 
-LikelyMistakes::LikelyMistakes(std::span<const std::string> cells, ErrorConvention convention)
-    : convention_(convention) {
+LikelyMistakes::LikelyMistakes(std::span<const std::string> cells, ErrorConvention convention,
+                               bool is_anchored)
+    : convention_(convention), is_anchored_(is_anchored) {
   for (const std::string& label : cells) cells_.emplace_back().label = label;
 }
 
 LikelyMistakes::Misfit LikelyMistakes::misfit(const StateRows& rows, std::size_t row,
                                               const Eigen::VectorXd& mean,
                                               const Eigen::VectorXd& truth) const {
-  const double cosine = mean.tail<4>().dot(truth.tail<4>());
+  const double cosine = mean.segment<4>(kQuaternionPlace).dot(truth.segment<4>(kQuaternionPlace));
   const Eigen::VectorXd error = error_of(rows.shape, convention_, mean, truth);
   const analysis::Nees nees = analysis::imported_nees(error, rows.covariance[row]);
   return {2.0 * std::acos(std::min(std::abs(cosine), 1.0)),
@@ -158,10 +160,27 @@ void LikelyMistakes::add(std::size_t cell, const StateRows& rows, const std::fil
     if (rows.shape.kind == StateKind::pose_in_space) {
       compare_quaternions(rows, row, truth, of_cell);
     }
+    if (row == 0 && !is_anchored_) compare_starts(rows, path, truth, of_cell);
     if (!is_copy(rows, row, truth)) continue;
     if (of_cell.copies++ == 0) of_cell.first_copy = place_of_line(path, line);
     of_cell.later_copies += row > 0 ? 1 : 0;
   }
+}
+
+/// Counts a run whose first position is a hundred deviations or more from the truth.
+void LikelyMistakes::compare_starts(const StateRows& rows, const std::filesystem::path& path,
+                                    const StateRows& truth, OfCell& cell) {
+  if (rows.shape.kind == StateKind::vector) return;
+  constexpr double kFarDeviations = 100.0, kFarDistance = 0.01;  // [m]
+  ++cell.runs;
+  const Eigen::VectorXd& start = truth.state[nearest_row(truth, rows.time.front())];
+  const double distance = (rows.state.front().head<2>() - start.head<2>()).norm();
+  const double deviation =
+      std::sqrt(std::max(rows.covariance.front().diagonal().head<2>().sum(), 0.0));
+  if (!(distance > kFarDistance && distance > kFarDeviations * deviation)) return;
+  if (cell.apart++ > 0) return;
+  cell.distance = distance;
+  cell.first_apart = place_of_line(path, rows.line.front());
 }
 
 /// Adds a sentence for each sign that components have.
@@ -207,6 +226,13 @@ void LikelyMistakes::add_notes(const OfCell& cell, std::vector<std::string>& not
                     mean(other.angle) + " rad from the truth on average, with a NEES ratio of " +
                     mean(other.nees) + ", and are " + mean(stated.angle) +
                     " rad): write x, y, z, w");
+  }
+  if (2 * cell.apart > cell.runs) {
+    notes.push_back(cell.label + ": " + std::to_string(cell.apart) + " of " +
+                    std::to_string(cell.runs) + (cell.runs == 1 ? " run begins" : " runs begin") +
+                    " far from the truth for the deviations that they claim (" +
+                    compact(cell.distance) + " m in " + cell.first_apart +
+                    "): if the frames differ, see --anchor");
   }
   if (10 * cell.later_copies > cell.rows) {  // the first row may be known exactly
     notes.push_back(cell.label + ": the estimates equal the truth, number by number, in " +

@@ -19,8 +19,9 @@ namespace montecarta::experiments {
 /// one time, units.
 class LikelyMistakes {
  public:
-  /// The errors of the estimates are those of `convention`.
-  LikelyMistakes(std::span<const std::string> cells, ErrorConvention convention);
+  /// The errors of the estimates are those of `convention`. If truths are moved onto the first
+  /// estimates, these are not compared.
+  LikelyMistakes(std::span<const std::string> cells, ErrorConvention convention, bool is_anchored);
 
   /// Adds the truth of a run. Throws StudyError if angles are in another unit than their columns
   /// say.
@@ -60,6 +61,10 @@ class LikelyMistakes {
     std::uint64_t copies = 0;        ///< number of rows that equal the truth
     std::uint64_t later_copies = 0;  ///< those that are not the first row of a file
     std::string first_copy;          ///< file and line of the first of them
+    std::uint64_t runs = 0;
+    std::uint64_t apart = 0;  ///< runs that begin far from their truth for what they claim
+    double distance = 0.0;    ///< [m] of the first of them
+    std::string first_apart;  ///< file and line of the first of them
   };
 
   static void mark(const StateRows& rows, std::size_t row, const std::filesystem::path& path,
@@ -68,10 +73,13 @@ class LikelyMistakes {
                 const Eigen::VectorXd& truth) const;
   void compare_quaternions(const StateRows& rows, std::size_t row, const StateRows& truth,
                            OfCell& cell) const;
+  static void compare_starts(const StateRows& rows, const std::filesystem::path& path,
+                             const StateRows& truth, OfCell& cell);
   static void add_marks(const OfCell& cell, std::vector<std::string>& notes);
   static void add_notes(const OfCell& cell, std::vector<std::string>& notes);
 
   ErrorConvention convention_;
+  bool is_anchored_;
   std::vector<OfCell> cells_;
   std::filesystem::path truth_path_;  ///< file of the last truth
   std::uint64_t left_out_ = 0;        ///< number of rows of one time that were not kept

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/judging/read_rows.hpp"
 
+#include "analysis/run/nees.hpp"
+
 namespace montecarta::experiments {
 namespace {
 
@@ -56,12 +58,22 @@ std::vector<double> times_in(const std::filesystem::path& path, EqualTimes equal
   return kept.time;
 }
 
-StateRows read_truth(const std::filesystem::path& path, const StateShape& shape, EqualTimes equal) {
+StateRows read_truth(const std::filesystem::path& path, const StateShape& shape,
+                     const TruthReading& how) {
   CsvRows file(path);
-  const std::vector<std::size_t> fields = truth_fields(file.columns(), shape, file.place());
+  const EstimateFields fields =
+      truth_fields(file.columns(), shape, file.place(), how.prefix, how.with_covariance);
   StateRows rows{shape, {}, {}, {}, {}, {}};
   while (file.next()) {
-    if (take_time(file, equal, rows)) rows.state.push_back(state_in(file, fields, shape));
+    if (!take_time(file, how.equal, rows)) continue;
+    rows.state.push_back(state_in(file, fields.state, shape));
+    if (!how.with_covariance) continue;
+    rows.covariance.push_back(covariance_in(file, fields));
+    const Eigen::VectorXd none = Eigen::VectorXd::Zero(rows.covariance.back().rows());
+    if (!analysis::imported_nees(none, rows.covariance.back()).is_usable()) {
+      file.refuse("the covariance of the truth is not symmetric or not positive semidefinite (it " +
+                  std::string("is added to that of the estimate): correct it"));
+    }
   }
   file.require_some();
   return rows;

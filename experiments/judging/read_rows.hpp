@@ -4,6 +4,7 @@
 #include "experiments/judging/state_rows.hpp"
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace montecarta::experiments {
@@ -17,8 +18,16 @@ StateRows read_estimates(const std::filesystem::path& path, EqualTimes equal = E
 std::vector<double> times_in(const std::filesystem::path& path,
                              EqualTimes equal = EqualTimes::refuse);
 
-/// Reads a truth of the same state; other columns are ignored. Throws like read_estimates().
+/// How truths are read.
+struct TruthReading {
+  EqualTimes equal = EqualTimes::refuse;
+  bool with_covariance = false;  ///< whether to read the covariance of the truth's own error
+  std::string prefix = {};       ///< with which the names of its columns begin
+};
+
+/// Reads a truth of the same state; other columns are ignored. Throws like read_estimates(), also
+/// if a covariance is none.
 StateRows read_truth(const std::filesystem::path& path, const StateShape& shape,
-                     EqualTimes equal = EqualTimes::refuse);
+                     const TruthReading& how = {});
 
 }  // namespace montecarta::experiments

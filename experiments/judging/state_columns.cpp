@@ -25,20 +25,38 @@ const StateShape& pose_in_space_shape() {
   return shape;
 }
 
+/// The velocity beside a pose in space.
+const Names kVelocityColumns = {"vx_mps", "vy_mps", "vz_mps"};
 const std::string kCovariancePrefix = "cov_";
 const Names kPoseColumns = {"x_m", "y_m", "heading_rad"};
 /// Other names of the heading, each followed by _rad.
 const Names kOtherHeadings = {"yaw", "theta", "psi", "phi"};
 const std::string kHeadingColumn = kPoseColumns.back();
 const Names kQuaternionColumns = {"qx", "qy", "qz", "qw"};
-const std::string kNis = "nis", kNisDof = "nis_dof";
+const std::string kNis = "nis", kNisDof = "nis_dof", kSensor = "sensor";
 constexpr std::array kKnownUnits = {"m", "rad", "mps", "mps2", "radps", "s"};
 /// Columns that need a unit. Otherwise angles might be in degrees, and a heading would not be
 /// wrapped.
 const Names kNeedUnit = {"x", "y", "z", "heading", "yaw", "pitch", "roll", "theta", "phi", "psi"};
 
+bool is_of_state(const std::string& name) {
+  return name != kTimeColumn && name != kNis && name != kNisDof && name != kSensor &&
+         !name.starts_with(kCovariancePrefix);
+}
+
 bool has_name(const Names& names, const std::string& name) {
   return std::ranges::find(names, name) != names.end();
+}
+
+/// The names of the state in a header, without those of a truth beside it.
+Names state_in_header(const Names& header) {
+  Names state;
+  std::ranges::copy_if(header, std::back_inserter(state), [&](const std::string& name) {
+    const bool is_of_truth =
+        name.starts_with(kTruthPrefix) && has_name(header, name.substr(kTruthPrefix.size()));
+    return is_of_state(name) && !is_of_truth;
+  });
+  return state;
 }
 
 std::size_t place_of_name(const Names& names, const std::string& name) {
@@ -147,6 +165,51 @@ bool is_same_set(Names a, Names b) {
   return a == b;
 }
 
+bool has_all(const Names& state, const Names& columns) {
+  return std::ranges::all_of(columns, [&](const auto& name) { return has_name(state, name); });
+}
+
+/// Adds columns with their components and units to a state. Throws StudyError if a component is
+/// there already.
+void add_components(const Names& columns, const std::string& place, StateShape& shape) {
+  for (const std::string& column : columns) {
+    const auto [component, unit] = component_and_unit(column, place);
+    if (const std::size_t same = place_of_name(shape.components, component);
+        same < shape.components.size()) {
+      const std::size_t behind = shape.columns.size() - shape.components.size();
+      throw StudyError(place + ": '" + shape.columns[same + behind] + "' and '" + column +
+                       "' are both of a component " + component + " (units do not count, and cov_" +
+                       component + "_" + component +
+                       " would be of either): name them apart, e.g. " + component + "1, " +
+                       component + "2");
+    }
+    shape.columns.push_back(column);
+    shape.components.push_back(component);
+    shape.units.push_back(unit);
+  }
+}
+
+/// A pose in space, then its velocity, if all of it is there, and then the other columns.
+StateShape shape_with_pose_in_space(const Names& state, const std::string& place) {
+  StateShape shape = pose_in_space_shape();
+  Names others = has_all(state, kVelocityColumns) ? kVelocityColumns : Names();
+  for (const std::string& column : state) {
+    if (!has_name(shape.columns, column) && !has_name(others, column)) others.push_back(column);
+  }
+  add_components(others, place, shape);
+  return shape;
+}
+
+/// Errors, whose columns are called error_C: a vector with the components of the state.
+StateShape shape_of_errors(const Names& state, const std::string& place) {
+  Names columns;
+  for (const std::string& column : state) columns.push_back(column.substr(kErrorPrefix.size()));
+  StateShape shape;
+  add_components(columns, place, shape);
+  shape.columns = state;
+  return shape;
+}
+
 StateShape shape_of(const Names& state, const std::string& place) {
   if (state.empty()) {
     throw StudyError(place + ": no state (the header has times and covariances alone): add e.g. " +
@@ -155,28 +218,15 @@ StateShape shape_of(const Names& state, const std::string& place) {
   if (is_same_set(usual_names(state), kPoseColumns)) {
     return {StateKind::pose, kPoseColumns, {"x", "y", "heading"}, {"m", "m", "rad"}};
   }
-  if (is_same_set(state, pose_in_space_shape().columns)) {
-    return pose_in_space_shape();
-  }
+  if (has_all(state, pose_in_space_shape().columns)) return shape_with_pose_in_space(state, place);
   if (std::ranges::any_of(kQuaternionColumns,
                           [&](const std::string& q) { return has_name(state, q); })) {
     throw StudyError(place + ": a quaternion, but not a pose in space (nothing else has one): " +
-                     "name the state " + joined(pose_in_space_shape().columns, ","));
+                     "name the pose " + joined(pose_in_space_shape().columns, ",") +
+                     ", which other columns may follow");
   }
-  StateShape shape{StateKind::vector, state, {}, {}};
-  for (const std::string& column : state) {
-    const auto [component, unit] = component_and_unit(column, place);
-    const auto same = std::ranges::find(shape.components, component);
-    if (same != shape.components.end()) {
-      throw StudyError(
-          place + ": '" + state[static_cast<std::size_t>(same - shape.components.begin())] +
-          "' and '" + column + "' are both of a component " + component +
-          " (units do not count, and cov_" + component + "_" + component +
-          " would be of either): name them apart, e.g. " + component + "1, " + component + "2");
-    }
-    shape.components.push_back(component);
-    shape.units.push_back(unit);
-  }
+  StateShape shape;
+  add_components(state, place, shape);
   return shape;
 }
 
@@ -203,6 +253,25 @@ std::map<std::string, std::pair<std::size_t, std::size_t>> names_of_elements(
   return elements;
 }
 
+/// Throws StudyError if an element of the covariance has indices, but a state of more than a pose
+/// in space has its columns in another order than that of its components.
+void refuse_indices_out_of_order(const Names& header, std::size_t field, const StateShape& shape,
+                                 const std::string& place) {
+  const bool has_index = header[field].find_first_of("0123456789", kCovariancePrefix.size()) ==
+                         kCovariancePrefix.size();
+  if (!has_index || shape.kind != StateKind::pose_in_space ||
+      shape.dimension() == static_cast<std::size_t>(kPoseComponents)) {
+    return;
+  }
+  if (state_in_header(header) == shape.columns) return;
+  throw StudyError(place + ": '" + header[field] +
+                   "' has indices, but the state has not the order " +
+                   joined(shape.components, ",") +
+                   " (so a component has no certain number): write the names of components, or "
+                   "the columns in the order " +
+                   joined(shape.columns, ","));
+}
+
 std::vector<std::size_t> covariance_fields(const Names& header, const StateShape& shape,
                                            const std::string& place) {
   const std::size_t d = shape.dimension();
@@ -218,6 +287,7 @@ std::vector<std::size_t> covariance_fields(const Names& header, const StateShape
                        shape.components.front() + "_" + shape.components.back() + " or cov_0_" +
                        std::to_string(d - 1));
     }
+    refuse_indices_out_of_order(header, f, shape, place);
     const auto [i, j] = element->second;
     if (found[i * d + j]) {
       throw StudyError(place + ": '" + header[f] +
@@ -241,23 +311,19 @@ std::vector<std::size_t> covariance_fields(const Names& header, const StateShape
   return fields;
 }
 
-bool is_of_state(const std::string& name) {
-  return name != kTimeColumn && name != kNis && name != kNisDof &&
-         !name.starts_with(kCovariancePrefix);
-}
-
 /// Tolerance of the length of a quaternion that was printed with three digits.
 constexpr double kQuaternionPlaceSlack = 2e-3;
 
 }  // namespace
 
 void normalise_quaternion(Eigen::VectorXd& state, const std::string& place) {
-  const double length = state.tail<4>().norm();
+  auto quaternion = state.segment<4>(kQuaternionPlace);
+  const double length = quaternion.norm();
   if (std::abs(length - 1.0) > kQuaternionPlaceSlack) {
     throw StudyError(place + ": the quaternion has length " + to_text(length) +
                      " (of a rotation it is 1): write qx, qy, qz, qw of a unit quaternion");
   }
-  state.tail<4>() /= length;
+  quaternion /= length;
 }
 
 std::uint32_t checked_dof(double nis, double dof, const std::string& place) {
@@ -276,12 +342,26 @@ std::string name_of(StateKind kind) {
                                             : "vector";
 }
 
-EstimateFields estimate_fields(const Names& header, const std::string& place) {
+OwnTruth own_truth_in(const Names& header) {
+  const Names state = state_in_header(header);
+  if (state.empty()) return OwnTruth::none;
+  if (std::ranges::all_of(state, [](const auto& c) { return c.starts_with(kErrorPrefix); }))
+    return OwnTruth::errors;
+  const bool has_truth = std::ranges::all_of(
+      state, [&](const auto& column) { return has_name(header, kTruthPrefix + column); });
+  return has_truth ? OwnTruth::columns : OwnTruth::none;
+}
+
+EstimateFields fields_of(const Names& header, const std::string& place) {
   check_header(header, place);
-  Names state;
-  std::ranges::copy_if(header, std::back_inserter(state), is_of_state);
-  EstimateFields fields{
-      .shape = shape_of(state, place), .state = {}, .covariance = {}, .nis = {}, .nis_dof = {}};
+  const Names state = state_in_header(header);
+  EstimateFields fields{.shape = own_truth_in(header) == OwnTruth::errors
+                                     ? shape_of_errors(state, place)
+                                     : shape_of(state, place),
+                        .state = {},
+                        .covariance = {},
+                        .nis = {},
+                        .nis_dof = {}};
   if (has_name(header, kNis) != has_name(header, kNisDof)) {
     throw StudyError(place +
                      ": nis and nis_dof belong together (neither is of use without the "
@@ -297,36 +377,50 @@ EstimateFields estimate_fields(const Names& header, const std::string& place) {
   return fields;
 }
 
+EstimateFields estimate_fields(const Names& header, const std::string& place) {
+  if (!has_name(header, kSensor)) return fields_of(header, place);
+  throw StudyError(place + ": '" + kSensor +
+                   "' names the sensor of an innovation (this file has estimates): give "
+                   "innovations in a file of their own");
+}
+
 EstimateFields innovation_fields(const Names& header, const std::string& place) {
   EstimateFields fields;
-  if (is_same_set(header, {kTimeColumn, kNis, kNisDof})) {
+  Names numbers = header;
+  std::erase(numbers, kSensor);
+  if (is_same_set(numbers, {kTimeColumn, kNis, kNisDof})) {
     check_header(header, place);
     fields.nis = place_of_name(header, kNis);
     fields.nis_dof = place_of_name(header, kNisDof);
-    return fields;
-  }
-  if (has_name(header, kNis) || has_name(header, kNisDof)) {
+  } else if (has_name(header, kNis) || has_name(header, kNisDof)) {
     throw StudyError(place +
                      ": nis and other columns (innovations are either): write time_s,nis,nis_dof, "
                      "or the components of the innovation and their covariance");
+  } else {
+    fields = fields_of(header, place);
   }
-  fields = estimate_fields(header, place);
+  if (has_name(header, kSensor)) fields.sensor = place_of_name(header, kSensor);
   if (fields.shape.kind != StateKind::pose_in_space) return fields;
   throw StudyError(place + ": a quaternion is no innovation: write its components, e.g. rx_rad");
 }
 
-std::vector<std::size_t> truth_fields(const Names& header, const StateShape& shape,
-                                      const std::string& place) {
+EstimateFields truth_fields(const Names& header, const StateShape& shape, const std::string& place,
+                            const std::string& prefix, bool with_covariance) {
   check_header(header, place);
-  std::vector<std::size_t> fields;
+  EstimateFields fields{.shape = shape, .state = {}, .covariance = {}, .nis = {}, .nis_dof = {}};
+  Names columns = header;
+  for (std::string& name : columns) {
+    name = name.starts_with(prefix) ? name.substr(prefix.size()) : std::string();
+  }
   for (const std::string& column : shape.columns) {
-    fields.push_back(place_of_column(header, column, shape.kind));
-    if (fields.back() == header.size()) {
-      throw StudyError(place + ": no column " + column +
+    fields.state.push_back(place_of_column(columns, column, shape.kind));
+    if (fields.state.back() == header.size()) {
+      throw StudyError(place + ": no column " + prefix + column +
                        " (the truth of everything that is estimated is needed): add it, or leave "
                        "it out of the estimates");
     }
   }
+  if (with_covariance) fields.covariance = covariance_fields(header, shape, place);
   return fields;
 }
 
@@ -381,8 +475,14 @@ std::string likeness_to_pose(const StateShape& shape) {
 }
 
 bool is_angle(const StateShape& shape, Eigen::Index k) {
-  return shape.kind != StateKind::pose_in_space &&
-         shape.units[static_cast<std::size_t>(k)] == "rad";
+  const bool is_in_space = shape.kind == StateKind::pose_in_space;
+  if (is_in_space && k < kPoseWidth) return false;
+  const Eigen::Index component = is_in_space ? k - kPoseWidth + kPoseComponents : k;
+  return shape.units[static_cast<std::size_t>(component)] == "rad";
+}
+
+bool has_velocity(const StateShape& shape) {
+  return shape.kind == StateKind::pose_in_space && has_all(shape.columns, kVelocityColumns);
 }
 
 }  // namespace montecarta::experiments

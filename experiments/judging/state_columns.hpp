@@ -18,8 +18,10 @@ namespace montecarta::experiments {
 enum class StateKind {
   /// Pose in the plane: x_m, y_m, heading_rad, which may also be called yaw, theta, psi or phi.
   pose,
-  pose_in_space,  ///< x_m, y_m, z_m and the quaternion qx, qy, qz, qw; its error has six components
-  vector          ///< any other state, in R^n
+  /// x_m, y_m, z_m and the quaternion qx, qy, qz, qw, which have six components of the error; then,
+  /// if there are, the velocity vx_mps, vy_mps, vz_mps in the map, and any other columns.
+  pose_in_space,
+  vector  ///< any other state, in R^n
 };
 /// Name of a kind in a result file: "pose", "pose in space" or "vector".
 std::string name_of(StateKind kind);
@@ -43,6 +45,7 @@ struct EstimateFields {
   /// {d, d} fields; if the file has only a triangle, most occur twice.
   std::vector<std::size_t> covariance;
   std::optional<std::size_t> nis, nis_dof;  ///< both are present or neither
+  std::optional<std::size_t> sensor = {};   ///< of a row of innovations: the name of its sensor
 };
 
 /// Name of the first column of every file.
@@ -50,18 +53,34 @@ inline const std::string kTimeColumn = "time_s";
 
 /// Parses the header of estimates: `time_s`, the state, then `cov_A_B`, where A and B are names of
 /// components or indices from 0, for the whole covariance or one triangle, and optionally `nis` and
-/// `nis_dof`. Throws StudyError that begins with `place`.
+/// `nis_dof`. Columns of a truth are ignored. Errors have the components of what they are errors
+/// of. Throws StudyError that begins with `place`.
 EstimateFields estimate_fields(const std::vector<std::string>& header, const std::string& place);
 
 /// Parses the header of innovations: `time_s`, then either `nis` and `nis_dof`, which leave the
 /// other fields empty, or the components of the innovation and their covariance as in a header of
-/// estimates. Throws StudyError that begins with `place`.
+/// estimates; and optionally `sensor`. Throws StudyError that begins with `place`.
 EstimateFields innovation_fields(const std::vector<std::string>& header, const std::string& place);
 
-/// Indices of the state's fields in the header of a truth, which may have further columns. Throws
-/// StudyError that begins with `place`.
-std::vector<std::size_t> truth_fields(const std::vector<std::string>& header,
-                                      const StateShape& shape, const std::string& place);
+/// Prefix of the columns of a truth in a file of estimates.
+inline const std::string kTruthPrefix = "true_";
+/// Prefix of columns that are errors, and not estimates.
+inline const std::string kErrorPrefix = "error_";
+
+/// What a file of estimates has in place of a truth in a file of its own.
+enum class OwnTruth {
+  none,
+  columns,  ///< a column true_C for each column C of the state
+  errors    ///< every column of the state is an error, named error_C
+};
+OwnTruth own_truth_in(const std::vector<std::string>& header);
+
+/// The fields of the state in the header of a truth, which may have further columns, and of its
+/// covariance if it is wanted. The names of columns begin with `prefix`. Throws StudyError that
+/// begins with `place`.
+EstimateFields truth_fields(const std::vector<std::string>& header, const StateShape& shape,
+                            const std::string& place, const std::string& prefix = "",
+                            bool with_covariance = false);
 
 /// The state {width} in the current row. Throws StudyError if a number is not finite or a
 /// quaternion is not of a rotation.
@@ -76,7 +95,7 @@ Eigen::MatrixXd covariance_in(const CsvRows& rows, const EstimateFields& fields)
 /// are no sum of squares and its count.
 std::pair<double, std::uint32_t> nis_in(const CsvRows& file, const EstimateFields& fields);
 
-/// Normalises the quaternion at the end of the state of a pose in space.
+/// Normalises the quaternion in the state of a pose in space.
 void normalise_quaternion(Eigen::VectorXd& state, const std::string& place);
 
 /// The number of components of a NIS. Throws StudyError that begins with `place` if `nis` is not a
@@ -92,5 +111,10 @@ std::string likeness_to_pose(const StateShape& shape);
 
 /// Index of the quaternion in the state of a pose in space, behind x, y, z.
 inline constexpr Eigen::Index kQuaternionPlace = 3;
+/// Width of a pose in space, and the number of its components. Other columns of the state, and
+/// their components, follow.
+inline constexpr Eigen::Index kPoseWidth = 7, kPoseComponents = 6;
+/// Whether a pose in space has a velocity, which follows the pose.
+bool has_velocity(const StateShape& shape);
 
 }  // namespace montecarta::experiments

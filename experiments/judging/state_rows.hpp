@@ -20,7 +20,7 @@ struct StateRows {
   StateShape shape = {};
   std::vector<double> time = {};                 ///< [s] {row}, increasing
   std::vector<Eigen::VectorXd> state = {};       ///< {row}{width}, quaternions of length 1
-  std::vector<Eigen::MatrixXd> covariance = {};  ///< {row}{d, d} as in the file; empty for a truth
+  std::vector<Eigen::MatrixXd> covariance = {};  ///< {row}{d, d} as in the file; empty if not read
   std::vector<double> nis = {};                  ///< {row} empty if the file has none
   std::vector<std::uint32_t> nis_dof = {};       ///< {row} empty if the file has none
   std::uint64_t unwrapped_innovations = 0;       ///< number of innovations with an angle beyond pi

@@ -44,6 +44,11 @@ TruthPath::TruthPath(StateRows rows, std::filesystem::path path, const TimeMatch
       usual_gap_(kUsualGaps * usual_spacing(rows_.time)),
       longest_gap_(match.longest_gap.value_or(usual_gap_)) {}
 
+TrueState TruthPath::in_row(std::size_t row) const {
+  if (rows_.covariance.empty()) return {rows_.state[row]};
+  return {rows_.state[row], rows_.covariance[row]};
+}
+
 bool TruthPath::goes_on_at(double time) const {
   return rows_.time.back() >= time - match_.tolerance;
 }
@@ -69,15 +74,15 @@ std::size_t TruthPath::row_near(double time, const std::string& estimate) const 
                                 "does, or use a larger --tolerance if times have few digits"));
 }
 
-/// The state between the two rows around `time`; nullopt, counted in `use`, if there are none or
+/// The truth between the two rows around `time`; nullopt, counted in `use`, if there are none or
 /// the gap between them is too long.
-std::optional<Eigen::VectorXd> TruthPath::interpolated(double time, const std::string& estimate,
-                                                       TruthUse& use) const {
+std::optional<TrueState> TruthPath::interpolated(double time, const std::string& estimate,
+                                                 TruthUse& use) const {
   const auto after = std::ranges::lower_bound(rows_.time, time);
   const auto right = static_cast<std::size_t>(after - rows_.time.begin());
   const bool has_left = right > 0, has_right = right < rows_.time.size();
-  if (has_right && rows_.time[right] - time <= kSameTime) return rows_.state[right];
-  if (has_left && time - rows_.time[right - 1] <= kSameTime) return rows_.state[right - 1];
+  if (has_right && rows_.time[right] - time <= kSameTime) return in_row(right);
+  if (has_left && time - rows_.time[right - 1] <= kSameTime) return in_row(right - 1);
   if (!has_left || !has_right) {
     if (use.outside++ == 0) use.first_outside = estimate;
     return std::nullopt;
@@ -91,14 +96,17 @@ std::optional<Eigen::VectorXd> TruthPath::interpolated(double time, const std::s
     return std::nullopt;
   }
   if (to - from > usual_gap_) use.longest_crossed = std::max(use.longest_crossed, to - from);
-  return between(rows_.shape, rows_.state[right - 1], rows_.state[right],
-                 (time - from) / (to - from));
+  const double share = (time - from) / (to - from);
+  TrueState found{between(rows_.shape, rows_.state[right - 1], rows_.state[right], share)};
+  if (rows_.covariance.empty()) return found;
+  found.covariance = (1.0 - share) * rows_.covariance[right - 1] + share * rows_.covariance[right];
+  return found;
 }
 
-std::vector<std::optional<Eigen::VectorXd>> TruthPath::at(const StateRows& estimates,
-                                                          const std::filesystem::path& path,
-                                                          TruthUse& use) const {
-  std::vector<std::optional<Eigen::VectorXd>> found;
+std::vector<std::optional<TrueState>> TruthPath::at(const StateRows& estimates,
+                                                    const std::filesystem::path& path,
+                                                    TruthUse& use) const {
+  std::vector<std::optional<TrueState>> found;
   std::optional<std::size_t> used;
   for (const double time : estimates.time) {
     const std::string estimate = path.string() + ": time " + to_text(time) + " s";
@@ -118,7 +126,7 @@ std::vector<std::optional<Eigen::VectorXd>> TruthPath::at(const StateRows& estim
       use.largest_mismatch = mismatch;
       use.of_mismatch = estimate;
     }
-    found.emplace_back(rows_.state[row]);
+    found.emplace_back(in_row(row));
   }
   const bool has_any = std::ranges::any_of(found, [](const auto& one) { return one.has_value(); });
   if (has_any || found.empty()) return found;

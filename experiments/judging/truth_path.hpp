@@ -37,25 +37,31 @@ struct TruthUse {
   std::vector<std::string> notes() const;
 };
 
+/// The truth at the time of an estimate.
+struct TrueState {
+  Eigen::VectorXd state;            ///< {width}
+  Eigen::MatrixXd covariance = {};  ///< {d, d} of the truth's own error; empty if it has none
+};
+
 /// The truth of one run.
 class TruthPath {
  public:
-  /// Takes the rows of the file `path`.
+  /// Takes the rows of the file `path`, which may have covariances.
   TruthPath(StateRows rows, std::filesystem::path path, const TimeMatch& match);
 
   /// {row} The truth at the times of the estimates in the file `path`. With `interpolate`, a row in
   /// a gap of the truth, or before or after it, has none and is counted in `use`; without it, that
   /// is an error. Throws StudyError that names both files, also if two estimates have the same
   /// row of the truth, or if no estimate has a truth.
-  std::vector<std::optional<Eigen::VectorXd>> at(const StateRows& estimates,
-                                                 const std::filesystem::path& path,
-                                                 TruthUse& use) const;
+  std::vector<std::optional<TrueState>> at(const StateRows& estimates,
+                                           const std::filesystem::path& path, TruthUse& use) const;
   /// Whether the truth goes on at `time` [s] or later.
   bool goes_on_at(double time) const;
 
  private:
-  std::optional<Eigen::VectorXd> interpolated(double time, const std::string& estimate,
-                                              TruthUse& use) const;
+  TrueState in_row(std::size_t row) const;
+  std::optional<TrueState> interpolated(double time, const std::string& estimate,
+                                        TruthUse& use) const;
   std::size_t row_near(double time, const std::string& estimate) const;
 
   StateRows rows_;

@@ -4,6 +4,7 @@
 // --gtest_filter='*SlowWhiteness*'` prints the whole table.
 #include "analysis/verdict/innovations.hpp"
 
+#include "analysis/statistics/distributions.hpp"
 #include "analysis/statistics/nees_bounds.hpp"
 #include "engine/random/stream.hpp"
 #include "tests/analysis/synthetic_runs.hpp"
@@ -328,6 +329,92 @@ TEST(SlowWhiteness, SizeIsNotCalledOffWhereInnovationsRemember) {
                 100.0 * error);
     if (study.runs * study.scans < 100) continue;
     EXPECT_LT(rate, 0.05 + 3.0 * error);
+  }
+}
+
+/// Innovations of a Kalman filter of a random walk with unit steps, whose measurements have unit
+/// errors. It believes steps of another variance, and may leave out what is beyond a gate.
+struct WalkStudy {
+  double believed = 1.0;  ///< variance of a step
+  double gate = 0.0;      ///< largest NIS; 0: none
+  double bias = 0.0;      ///< of the innovations, in their deviations
+  std::size_t runs = 20, scans = 100;
+
+  Innovations innovations(std::uint64_t seed) const {
+    InnovationSums sums(scans, 1);
+    for (std::uint64_t run = 0; run < runs; ++run) add(seed, run, sums);
+    return judged(sums, scans);
+  }
+
+ private:
+  void add(std::uint64_t seed, std::uint64_t run, InnovationSums& sums) const {
+    RngStream draw({seed, run, 0, 1, Draw::test});
+    double truth = draw.normal(), mean = 0.0, variance = 1.0;
+    std::vector<double> nis(scans), standardised(scans, std::nan(""));
+    std::vector<std::uint32_t> dof(scans);
+    for (std::size_t s = 0; s < scans; ++s) {
+      truth += draw.normal();
+      variance += believed;
+      const double spread = variance + 1.0;
+      const double innovation = truth + draw.normal() - mean + bias * std::sqrt(spread);
+      const double squared = innovation * innovation / spread;
+      if (gate > 0.0 && squared > gate) continue;
+      nis[s] = gate > 0.0 ? chi_squared_before_gate(squared, 1.0, gate) : squared;
+      standardised[s] = std::copysign(std::sqrt(nis[s]), innovation);
+      dof[s] = 1;
+      mean += variance / spread * innovation;
+      variance -= variance * variance / spread;
+    }
+    sums.add(run, scan_times(scans), nis, dof, standardised);
+  }
+};
+
+// Innovations of the wrong sign that follow each other have squares that hardly do.
+TEST(Innovations, AreCorrelatedComponentByComponent) {
+  const Innovations right = WalkStudy{}.innovations(41);
+  ASSERT_EQ(right.components.size(), 1u);
+  EXPECT_TRUE(right.components[0].is_white());
+  EXPECT_EQ(right.whiteness(), Whiteness::white);
+  const Innovations slow = WalkStudy{.believed = 0.25}.innovations(41);
+  EXPECT_EQ(slow.components[0].lag, 1u);
+  EXPECT_GT(slow.components[0].correlation, 0.15);
+  EXPECT_FALSE(slow.components[0].is_white());
+  EXPECT_EQ(slow.whiteness(), Whiteness::not_white);
+}
+
+// A gate lets values from 0 to 9 pass; of these 1 has the rank that 1.003... has among all.
+TEST(Innovations, BehindAGateHaveTheScaleOfAll) {
+  EXPECT_NEAR(chi_squared_before_gate(1.0, 2.0, 9.0),
+              -2.0 * std::log(1.0 - (1.0 - std::exp(-0.5)) / (1.0 - std::exp(-4.5))), 1e-12);
+  EXPECT_EQ(chi_squared_before_gate(0.0, 2.0, 9.0), 0.0);
+  EXPECT_TRUE(std::isfinite(chi_squared_before_gate(9.0, 2.0, 9.0)));
+}
+
+// Innovations of a right filter and of one that believes too small steps, behind a gate of three
+// deviations and not: how often whiteness and size are called off. `MONTECARTA_STUDIES=2000
+// build/analysis_tests --gtest_filter='*SlowGated*'` prints what STATISTICS 9 says.
+TEST(SlowGatedInnovations, OfARightFilterAreCalledOffAtTheirLevel) {
+  const std::uint64_t studies = studies_of_a_line(200);
+  std::printf("believed  gate  not white [%%]  size off [%%]\n");
+  for (const WalkStudy& study :
+       {WalkStudy{.believed = 1.0, .gate = 0.0}, WalkStudy{.believed = 1.0, .gate = 9.0},
+        WalkStudy{.believed = 0.5, .gate = 0.0}, WalkStudy{.believed = 0.5, .gate = 9.0}}) {
+    double not_white = 0.0, off = 0.0;
+    for (std::uint64_t k = 0; k < studies; ++k) {
+      const Innovations found = study.innovations(1 + k);
+      not_white += found.whiteness() == Whiteness::not_white ? 1.0 : 0.0;
+      off += is_called_off(found) ? 1.0 : 0.0;
+    }
+    const auto n = static_cast<double>(studies);
+    std::printf("%.2f  %.0f  %.1f  %.1f\n", study.believed, study.gate, 100.0 * not_white / n,
+                100.0 * off / n);
+    if (study.believed == 1.0) {
+      EXPECT_LT(not_white / n, 0.05 + share_errors(0.05, studies));
+      EXPECT_LT(off / n, 0.05 + share_errors(0.05, studies));
+    } else {
+      EXPECT_GT(not_white / n, 0.9);
+      EXPECT_GT(off / n, 0.9);
+    }
   }
 }
 

@@ -74,8 +74,10 @@ StudyPlan plan_of_every_column() {
                                  "the start are taken for"}};
   Cell imported;
   imported.label = imported.filter = "imported";
-  imported.imported = ImportedError{
-      .components = 3, .has_innovations = true, .has_conventions = true, .has_pose = true};
+  imported.imported = ImportedError{.components = 3,
+                                    .has_innovations = true,
+                                    .conventions = kErrorConventions.size(),
+                                    .has_pose = true};
   plan.cells.push_back(imported);
   return plan;
 }

@@ -35,6 +35,15 @@ StateShape space_shape() {
           {"m", "m", "m", "rad", "rad", "rad"}};
 }
 
+/// A pose in space with a velocity and a bias, of which the angle may be wrapped.
+StateShape navigation_shape() {
+  StateShape shape = space_shape();
+  shape.columns.insert(shape.columns.end(), {"vx_mps", "vy_mps", "vz_mps", "tilt_rad"});
+  shape.components.insert(shape.components.end(), {"vx", "vy", "vz", "tilt"});
+  shape.units.insert(shape.units.end(), {"mps", "mps", "mps", "rad"});
+  return shape;
+}
+
 /// exp(turn) and V(turn) by their series.
 struct Exponential {
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity(), V = Eigen::Matrix3d::Identity();
@@ -66,20 +75,28 @@ Eigen::VectorXd mean_with_error(const StateShape& shape, ErrorConvention convent
   } else {
     p = truth.head<3>();
     rho = error.head<3>();
-    turn = error.tail<3>();
-    R = Eigen::Quaterniond(Eigen::Vector4d(truth.tail<4>())).toRotationMatrix();
+    turn = error.segment<3>(3);
+    R = Eigen::Quaterniond(Eigen::Vector4d(truth.segment<4>(3))).toRotationMatrix();
   }
   const Exponential exponential(turn);
   const bool is_body = convention == ErrorConvention::body;
-  const Eigen::Matrix3d turned = is_body ? R * exponential.R : exponential.R * R;
-  if (convention == ErrorConvention::world) p += rho;
-  if (is_body) p += turned * rho;
-  if (convention == ErrorConvention::right_invariant) p = exponential.R * p + exponential.V * rho;
+  const bool is_turned_in_body = is_body || convention == ErrorConvention::world_body;
+  const Eigen::Matrix3d turned = is_turned_in_body ? R * exponential.R : exponential.R * R;
+  const auto moved = [&](const Eigen::Vector3d& vector, const Eigen::Vector3d& by) {
+    if (is_body) return Eigen::Vector3d(vector + turned * by);
+    if (convention != ErrorConvention::right_invariant) return Eigen::Vector3d(vector + by);
+    return Eigen::Vector3d(exponential.R * vector + exponential.V * by);
+  };
+  p = moved(p, rho);
   Eigen::VectorXd mean(shape.width());
   if (plane) {
     mean << p.x(), p.y(), wrap(truth(2) + error(2));
   } else {
-    mean << p, Eigen::Quaterniond(turned).normalized().coeffs();
+    mean.head<7>() << p, Eigen::Quaterniond(turned).normalized().coeffs();
+  }
+  if (shape.width() > 7) {
+    mean.segment<3>(7) = moved(truth.segment<3>(7), error.segment<3>(6));
+    mean(10) = wrap(truth(10) + error(9));
   }
   return mean;
 }
@@ -89,7 +106,7 @@ Eigen::VectorXd drawn_truth(const StateShape& shape, RngStream& draw) {
   Eigen::VectorXd truth(shape.width());
   for (auto& value : truth) value = 10.0 * draw.normal();
   if (shape.kind == StateKind::pose) truth(2) = wrap(truth(2));
-  if (shape.kind == StateKind::pose_in_space) truth.tail<4>().normalize();
+  if (shape.kind == StateKind::pose_in_space) truth.segment<4>(3).normalize();
   return truth;
 }
 
@@ -114,7 +131,7 @@ Eigen::VectorXd drawn_error(const Eigen::MatrixXd& covariance, RngStream& draw) 
 // Law: the error of a mean that was moved by an error is that error.
 TEST(ErrorConvention, FindsTheErrorThatMovedTheMean) {
   RngStream draw({11, 0, 0, 0, Draw::test});
-  for (const StateShape& shape : {plane_shape(), space_shape()}) {
+  for (const StateShape& shape : {plane_shape(), space_shape(), navigation_shape()}) {
     for (const ErrorConvention convention : conventions_of(shape.kind)) {
       for (int k = 0; k < 100; ++k) {
         const Eigen::VectorXd truth = drawn_truth(shape, draw);
@@ -174,7 +191,7 @@ TEST(ErrorConvention, TurnsCovariancesIntoTheMap) {
 
 TEST(ErrorConvention, IsExplained) {
   std::vector<std::string> names;
-  for (const ErrorConvention convention : conventions_of(StateKind::pose)) {
+  for (const ErrorConvention convention : conventions_of(StateKind::pose_in_space)) {
     names.push_back(name_of(convention));
     EXPECT_THAT(commands_text(), HasSubstr("\n  " + names.back() + ": "));
   }
@@ -193,7 +210,7 @@ ConventionHint hint_of(const StateShape& shape, ErrorConvention right, std::uint
     for (std::size_t s = 0; s < kScans; ++s) {
       const Eigen::VectorXd truth = drawn_truth(shape, draw);
       const Eigen::VectorXd mean = mean_with_error(shape, right, truth, drawn_error(P, draw));
-      for (std::size_t k = 0; k < nees.size(); ++k) {
+      for (std::size_t k = 0; k < conventions_of(shape.kind).size(); ++k) {
         const ErrorConvention by = conventions_of(shape.kind)[k];
         EXPECT_EQ(name_of(by), engine::kErrorConventions[k].name);
         nees[k].push_back(analysis::imported_nees(error_of(shape, by, mean, truth), P).value);

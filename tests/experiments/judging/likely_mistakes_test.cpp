@@ -39,7 +39,7 @@ Eigen::VectorXd planar(double unknown) {
 std::string notes_on(const StateRows& rows,
                      const StateRows& truth = rows_with(Eigen::VectorXd::Zero(6), 1.0)) {
   const std::vector<std::string> cells = {"ekf"};
-  LikelyMistakes mistakes(cells, ErrorConvention::world);
+  LikelyMistakes mistakes(cells, ErrorConvention::world, false);
   mistakes.add_truth(truth, "truth.csv");
   mistakes.add(0, rows, "ekf/run_0.csv", truth);
   return joined(mistakes.notes(), "\n");
@@ -71,6 +71,14 @@ TEST(LikelyMistakes, AreQuaternionsWithWFirst) {
   EXPECT_THAT(notes_on(swapped), HasSubstr("quaternions of the estimates may be written with w"));
   EXPECT_THAT(notes_on(rows_with(variances), swapped), HasSubstr("quaternions of the truth may"));
   EXPECT_EQ(notes_on(rows_with(variances, 0.0, {0.0, 0.0, 0.8, 0.6})), "") << "merely far off";
+}
+
+TEST(LikelyMistakes, AreFramesThatDiffer) {
+  EXPECT_THAT(notes_on(rows_with(1e-6 * planar(0.01), 9.0)),
+              AllOf(HasSubstr("ekf: 1 of 1 run begins far from the truth"),
+                    HasSubstr("(8.00 m in ekf/run_0.csv:2): if the frames differ, see --anchor")));
+  EXPECT_EQ(notes_on(rows_with(planar(0.01), 9.0)), "")
+      << "errors that the covariances may explain";
 }
 
 TEST(LikelyMistakes, InUnitsAreRefusedWithTheFactor) {

@@ -112,7 +112,7 @@ TEST_F(StateFiles, WithEqualTimesAreRefusedOrReadByARule) {
   const StateRows first = read_estimates(path_, EqualTimes::keep_first);
   EXPECT_EQ(first.state[0](0), 1.0);
   EXPECT_EQ(first.covariance[0](0, 0), 1.0);
-  EXPECT_EQ(read_truth(path_, first.shape, EqualTimes::keep_last).state[0](0), 2.0);
+  EXPECT_EQ(read_truth(path_, first.shape, {.equal = EqualTimes::keep_last}).state[0](0), 2.0);
   EXPECT_THROW(read_truth(path_, first.shape), StudyError);
 }
 
@@ -179,11 +179,11 @@ TEST_F(StateFiles, HaveTruthsAtTheTimesOfEstimatesOrBetween) {
   const auto at = [&](const std::vector<double>& times, const TimeMatch& match) {
     return TruthPath(rows, "truth.csv", match).at({.shape = shape, .time = times}, "est.csv", use);
   };
-  EXPECT_EQ(at({1.0 + 1e-7}, {})[0], Eigen::Vector2d(-3, 10));
+  EXPECT_EQ(at({1.0 + 1e-7}, {})[0]->state, Eigen::Vector2d(-3, 10));
   EXPECT_THAT(use.notes(), IsEmpty());
-  EXPECT_EQ(at({0.1}, {.tolerance = 0.2})[0], Eigen::Vector2d(3, 0));
+  EXPECT_EQ(at({0.1}, {.tolerance = 0.2})[0]->state, Eigen::Vector2d(3, 0));
   EXPECT_THAT(use.notes(), ElementsAre(HasSubstr("up to 0.1 s beside their estimates (est.csv")));
-  const auto half = at({0.5}, {.interpolate = true})[0].value();
+  const auto half = at({0.5}, {.interpolate = true})[0].value().state;
   EXPECT_NEAR(std::abs(half(0)), kPi, 1e-12);
   EXPECT_EQ(half(1), 5.0);
   EXPECT_THAT(complaint_of([&] { at({0.25}, {}); }),

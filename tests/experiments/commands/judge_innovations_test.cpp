@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Innovations by sensor and behind a gate, and two estimators without a truth.
+#include "analysis/statistics/distributions.hpp"
+#include "analysis/study/study_analysis.hpp"
+#include "engine/random/stream.hpp"
+#include "engine/records/result_file.hpp"
+#include "experiments/text/words.hpp"
+#include "tests/doubles/matchers.hpp"
+#include "tests/experiments/commands/program.hpp"
+
+namespace montecarta::experiments {
+namespace {
+
+class JudgeInnovations : public BlinkProgram {
+ protected:
+  Called judged(const std::vector<std::string>& files, const std::vector<std::string>& more) const {
+    std::vector<std::string> words = {"judge"};
+    words.insert(words.end(), files.begin(), files.end());
+    words.insert(words.end(), {"-o", "mine.h5", "--force"});
+    return call_with(words, more);
+  }
+  std::vector<double> column_of(const std::string& cell, const std::string& name) const {
+    const ResultFile file(folder_ / "mine.h5");
+    std::vector<double> column(file.times().size());
+    for (const StoredCell& stored : file.cells()) {
+      if (stored.label == cell) file.read(stored, name, 0, std::span(column));
+    }
+    return column;
+  }
+};
+
+TEST_F(JudgeInnovations, OfSeveralSensorsAreJudgedTogetherAndApart) {
+  write("i_0.csv", "time_s,sensor,nis,nis_dof\n1,gps,2,2\n1,lidar,3,3\n2,lidar,6,3\n");
+  write("i_1.csv", "time_s,sensor,nis,nis_dof\n1,lidar,3,3\n2,lidar,4,3\n3,lidar,5,3\n");
+  const Called called = judged({"i_0.csv", "i_1.csv"}, {"--innovations"});
+  ASSERT_EQ(called.code, 0) << called.err;
+  const ResultFile file(folder_ / "mine.h5");
+  std::vector<std::string> labels;
+  for (const StoredCell& cell : file.cells()) labels.push_back(cell.label);
+  EXPECT_THAT(labels, ElementsAre("i", "i.gps", "i.lidar"));
+  EXPECT_THAT(column_of("i", "nis"), ElementsAre(5.0, 6.0, IsNan()));
+  EXPECT_EQ(column_of("i.gps", "nis")[0], 2.0);
+  EXPECT_EQ(column_of("i.gps", "nis")[1], 0.0) << "nothing was observed";
+  EXPECT_EQ(column_of("i.lidar", "nis")[1], 6.0);
+  write("bad_0.csv", "time_s,sensor,nis,nis_dof\n1,,2,2\n");
+  EXPECT_THAT(judged({"bad_0.csv"}, {"--innovations"}).err, HasSubstr("bad_0.csv:2: no sensor"));
+  write("e.csv", "time_s,sensor,a,cov_0_0\n1,gps,2,2\n");
+  EXPECT_THAT(judged({"e.csv"}, {"--truth", "e.csv"}).err,
+              HasSubstr("'sensor' names the sensor of an innovation"));
+}
+
+TEST_F(JudgeInnovations, BehindAGateArePutOnTheScaleWithoutOne) {
+  write("i.csv", "time_s,nis,nis_dof\n1,9,2\n2,1,2\n3,0,0\n4,5,1\n");
+  const Called called = judged({"i.csv"}, {"--innovations", "--gate", "9"});
+  ASSERT_EQ(called.code, 0) << called.err;
+  const std::vector<double> nis = column_of("i", "nis");
+  EXPECT_GT(nis[0], 20.0) << "the largest that the gate lets pass";
+  EXPECT_NEAR(nis[1], analysis::chi_squared_before_gate(1.0, 2.0, 9.0), 1e-12);
+  EXPECT_EQ(nis[2], 0.0);
+  EXPECT_THAT(called.out, HasSubstr("with a NIS of at most 9 in a row of the files"));
+  EXPECT_THAT(judged({"i.csv"}, {"--innovations", "--gate", "8"}).err,
+              HasSubstr("i.csv:2: a NIS of 9 is beyond --gate 8"));
+  EXPECT_THAT(judged({"i.csv"}, {"--gate", "8"}).err, HasSubstr("--gate: needs --innovations"));
+  EXPECT_THAT(judged({"i.csv"}, {"--innovations", "--error", "world"}).err,
+              HasSubstr("--error: not beside --innovations"));
+}
+
+// Rows of one time are summed up, with the deviation of their sum.
+TEST_F(JudgeInnovations, WithComponentsHaveABiasAndCorrelations) {
+  std::vector<std::string> files;
+  for (std::uint64_t run = 0; run < 20; ++run) {
+    RngStream draw({8, run, 0, 0, Draw::test});
+    std::string text = "time_s,gap_m,cov_0_0\n";
+    for (int k = 0; k < 50; ++k) {
+      text += std::to_string(k / 2) + "," + to_text(2.0 * (draw.normal() + 0.5)) + ",4\n";
+    }
+    files.push_back("i_" + std::to_string(run) + ".csv");
+    write(files.back(), text);
+  }
+  const Called called = judged(files, {"--innovations"});
+  ASSERT_EQ(called.code, 0) << called.err;
+  EXPECT_THAT(called.out, AllOf(HasSubstr("a bias in gap of 0."), HasSubstr("25 scans each"),
+                                HasSubstr("judged as the errors of predicted measurements")));
+  EXPECT_THAT(called.out, Not(HasSubstr("missing")));
+  const std::vector<double> nis = column_of("i", "nis");
+  EXPECT_EQ(column_of("i", "error_covariance"), std::vector<double>(25, 4.0));
+  EXPECT_GT(nis[0], 0.0);
+}
+
+/// Estimates of one component over 20 rows with variance 1, whose errors have the deviation
+/// `deviation` and are all those of the draw `seed`.
+std::string estimates_with(double deviation, std::uint64_t run, std::uint32_t seed) {
+  RngStream draw({7, run, 0, seed, Draw::test});
+  std::string text = "time_s,a_m,cov_a_a\n";
+  for (int k = 0; k < 20; ++k) {
+    text += std::to_string(k) + "," + to_text(3.0 * k + deviation * draw.normal()) + ",1\n";
+  }
+  return text;
+}
+
+// Law: two consistent estimators are not called off by their difference, whatever their correlation
+// is; if one of them is off by enough, it is.
+TEST_F(JudgeInnovations, OrTheDifferenceOfTwoEstimatorsNeedNoTruth) {
+  std::vector<std::string> files, bold, same;
+  for (std::uint64_t run = 0; run < 20; ++run) {
+    const std::string ending = "_" + std::to_string(run) + ".csv";
+    write("a" + ending, estimates_with(1.0, run, 1));
+    write("b" + ending, estimates_with(1.0, run, 2));
+    write("c" + ending, estimates_with(3.0, run, 3));
+    write("d" + ending, estimates_with(1.001, run, 1));
+    for (const char* of : {"a", "b"}) files.push_back(of + ending);
+    for (const char* of : {"a", "c"}) bold.push_back(of + ending);
+    for (const char* of : {"a", "d"}) same.push_back(of + ending);
+  }
+  const auto words = [&](const std::vector<std::string>& of) {
+    const Called called = judged(of, {"--pair"});
+    EXPECT_EQ(called.code, 0) << called.err;
+    return called.out;
+  };
+  EXPECT_THAT(words(files), AllOf(HasSubstr("a-b is undecided: its errors are not shown to be "
+                                            "larger than they may be at most"),
+                                  HasSubstr("the differences of a and b, without a truth")));
+  EXPECT_EQ(call({"gate", "mine.h5"}).code, 5);
+  EXPECT_THAT(words(same), HasSubstr("a-d is undecided"));
+  EXPECT_THAT(words(bold), HasSubstr("a-c is optimistic"));
+  EXPECT_EQ(call({"gate", "mine.h5"}).code, 4);
+  EXPECT_THAT(judged({"a_0.csv", "a_1.csv"}, {"--pair"}).err,
+              HasSubstr("--pair: needs two estimators (1 was found)"));
+}
+
+}  // namespace
+}  // namespace montecarta::experiments
