@@ -3,6 +3,7 @@
 """Estimators in NumPy, judged from Python by arrays alone: judge_from_python_test.py PROGRAM."""
 import doctest
 import os
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -95,6 +96,27 @@ class JudgeFromPython(unittest.TestCase):
             montecarta.judge(errors, covariances[:, :-1])
         with self.assertRaisesRegex(ValueError, "is not later"):
             montecarta.judge(errors, covariances, times=np.zeros(6))
+
+    @unittest.skipUnless(os.path.isdir("/proc/self"), "reads of a process are not counted here")
+    def test_the_program_reads_compressed_chunks_of_many_runs_once(self):
+        errors = np.random.default_rng(5).standard_normal((300, 250, 2))
+        covariances = np.broadcast_to(np.eye(2), (*errors.shape, 2))
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "arrays.h5")
+            with h5py.File(path, "w") as file:
+                for name, values in [("error", errors), ("covariance", covariances)]:
+                    file.create_dataset(name, data=values, compression="gzip",
+                                        chunks=(300, 25) + (1,) * (values.ndim - 2))
+            output = os.path.join(folder, "result.h5")
+            judging = subprocess.Popen([montecarta.program(), "judge", path, "-o", output],
+                                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            os.waitid(os.P_PID, judging.pid, os.WEXITED | os.WNOWAIT)  # its counts are still there
+            with open(f"/proc/{judging.pid}/io", encoding="ascii") as file:
+                read = int(file.readline().split()[1])
+            self.assertEqual(judging.wait(), 0)
+            self.assertLess(read, 10 * os.path.getsize(path))  # a pass of each kind, not of each run
+            theirs = montecarta.Judgement(output)
+        self.assertEqual(theirs.ratio, montecarta.judge(errors, covariances).ratio)
 
     def test_runs_a_study(self):
         with tempfile.TemporaryDirectory() as folder:
