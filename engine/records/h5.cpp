@@ -504,7 +504,7 @@ void read_row(const Handle& dataset, std::uint64_t i, Element element, std::span
   const Handle file_space(H5Dget_space(dataset.id()));
   H5Sselect_hyperslab(file_space.id(), H5S_SELECT_SET, start.data(), nullptr, extent.data(),
                       nullptr);
-  const Handle memory_space = space_of({count(extent)});
+  const Handle memory_space = space_of(extent);  // of the same shape, which chunks are copied by
   const auto status = H5Dread(dataset.id(), native_type(element), memory_space.id(),
                               file_space.id(), H5P_DEFAULT, bytes.data());
   check(status, "read", dataset, "");
