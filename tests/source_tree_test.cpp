@@ -248,8 +248,8 @@ std::vector<std::string> without_licence(const Tree& tree) {
 /// Files at the top that belong neither there nor to a build or a result of the user.
 std::vector<std::string> strays(const std::vector<std::string>& names) {
   static const std::regex belongs(
-      R"(CMakeLists\.txt|CMakePresets\.json|CMakeUserPresets\.json|LICENSE|CITATION\.cff|\..*)"
-      R"(|(README|CONTRIBUTING|CHANGELOG|ARCHITECTURE)\.md)"
+      R"(CMakeLists\.txt|CMakePresets\.json|CMakeUserPresets\.json|pyproject\.toml|LICENSE)"
+      R"(|CITATION\.cff|\..*|(README|CONTRIBUTING|CHANGELOG|ARCHITECTURE)\.md)"
       R"(|build.*|.*\.h5|.*\.h5\.part(\.new)?|first_study_report|reproduction)");
   std::vector<std::string> found;
   for (const std::string& name : names) {

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <numeric>
 #include <type_traits>
 
@@ -16,6 +17,8 @@ namespace {
 
 constexpr hsize_t kPage = 4096;  // large datasets begin on a page, which makes pwrite faster
 constexpr hsize_t kLarge = 1024 * 1024;  // [byte] least size of a large dataset
+/// For chunks of one dataset: most bytes, least slots (HDF5's own number), most slots.
+constexpr hsize_t kMostCache = hsize_t{1} << 30U, kFewSlots = 521, kMostSlots = hsize_t{1} << 20U;
 
 static_assert(sizeof(hid_t) == sizeof(std::int64_t));
 
@@ -101,6 +104,30 @@ hid_t native_type(Element element) {
       return H5T_NATIVE_UINT64;
   }
   return H5I_INVALID_HID;
+}
+
+/// Access to a dataset in chunks, which other programs write, that caches all chunks with one index
+/// of the first axis: then read_row() decompresses each chunk once, and not once for each row. HDF5
+/// finds a chunk by a number with as many bits for an axis as its chunks need, so with this many
+/// slots no chunk displaces another. Nullopt if there are no chunks.
+std::optional<Handle> access_by_rows(const Handle& dataset) {
+  const Handle creation(H5Dget_create_plist(dataset.id()));
+  if (creation.id() < 0 || H5Pget_layout(creation.id()) != H5D_CHUNKED) return std::nullopt;
+  std::array<hsize_t, H5S_MAX_RANK> extent{}, chunk{};
+  const int rank = H5Pget_chunk(creation.id(), H5S_MAX_RANK, chunk.data());
+  const Handle space(H5Dget_space(dataset.id())), type(H5Dget_type(dataset.id()));
+  if (H5Sget_simple_extent_dims(space.id(), extent.data(), nullptr) != rank) return std::nullopt;
+  const auto capped = [](hsize_t bytes) { return std::min(bytes, kMostCache); };
+  hsize_t bytes = capped(capped(chunk[0]) * capped(H5Tget_size(type.id()))), slots = 1;
+  for (std::size_t k = 1; k < static_cast<std::size_t>(rank); ++k) {
+    const hsize_t length = std::max<hsize_t>(chunk[k], 1);
+    const hsize_t chunks = extent[k] / length + (extent[k] % length == 0 ? 0 : 1);
+    bytes = capped(bytes * capped(chunks * length));
+    slots = std::min(slots * std::bit_ceil(capped(chunks)), kMostSlots);
+  }
+  Handle access(H5Pcreate(H5P_DATASET_ACCESS));
+  H5Pset_chunk_cache(access.id(), std::max(slots, kFewSlots), std::max(bytes, kLarge), 1.0);
+  return access;
 }
 
 template <class Info>
@@ -413,8 +440,11 @@ Handle create_text(const Handle& parent, const std::string& name, std::size_t wi
 }
 
 Handle open_dataset(const Handle& parent, const std::string& name) {
-  return Handle(
-      check(H5Dopen2(parent.id(), name.c_str(), H5P_DEFAULT), "open dataset", parent, name));
+  const auto opened = [&](hid_t access) {
+    return Handle(check(H5Dopen2(parent.id(), name.c_str(), access), "open dataset", parent, name));
+  };
+  const auto access = access_by_rows(opened(H5P_DEFAULT));
+  return opened(access ? access->id() : H5P_DEFAULT);
 }
 
 void write(const Handle& dataset, Element element, const void* values) {
@@ -474,7 +504,7 @@ void read_row(const Handle& dataset, std::uint64_t i, Element element, std::span
   const Handle file_space(H5Dget_space(dataset.id()));
   H5Sselect_hyperslab(file_space.id(), H5S_SELECT_SET, start.data(), nullptr, extent.data(),
                       nullptr);
-  const Handle memory_space = space_of({count(extent)});
+  const Handle memory_space = space_of(extent);  // of the same shape, which chunks are copied by
   const auto status = H5Dread(dataset.id(), native_type(element), memory_space.id(),
                               file_space.id(), H5P_DEFAULT, bytes.data());
   check(status, "read", dataset, "");

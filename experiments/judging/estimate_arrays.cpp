@@ -102,17 +102,22 @@ void EstimateArrays::refuse(const std::string& name, const std::string& reason) 
   throw StudyError(path_.string() + ": " + name + " " + reason);
 }
 
-/// Opens an array of `axes` axes, of which that of runs may be left out if all runs share it.
+/// Opens an array of `axes` axes, of which that of runs may be left out, or have length 1, if all
+/// runs share it. With `save -hdf5` Octave writes a group that has the array as `value`.
 EstimateArrays::Array EstimateArrays::open(const std::string& name, std::size_t axes) const {
   if (!h5::has(file_, name)) {
     refuse(name, "is missing (arrays are error, or mean and truth, with covariance; the file has " +
                      joined(h5::members(file_)) +
                      "): write it, as experiments/JUDGING_ESTIMATES.md shows");
   }
-  if (h5::is_group(file_, name)) refuse(name, "is a group (an array is needed): write an array");
-  Array array{h5::open_dataset(file_, name), {}, name};
+  const bool is_of_octave = h5::is_group(file_, name) && h5::has(file_, name + "/value");
+  const std::string dataset = is_of_octave ? name + "/value" : name;
+  if (h5::is_group(file_, dataset)) refuse(name, "is a group (an array is needed): write an array");
+  Array array{h5::open_dataset(file_, dataset), {}, name};
   array.shape = h5::shape(array.dataset);
   const bool may_be_shared = name == "truth" || name == "time";
+  if (may_be_shared && array.shape.size() == axes && array.shape[0] == 1)
+    array.shape.erase(array.shape.begin());
   array.has_runs = array.shape.size() == axes;
   if (!array.has_runs && !(may_be_shared && array.shape.size() + 1 == axes)) {
     refuse(name, "has the axes " + axes_text(array.shape) + " (" + std::to_string(axes) +

@@ -204,12 +204,14 @@ void LikelyMistakes::add_marks(const OfCell& cell, std::vector<std::string>& not
     if (names.empty() || (sign != negative && names.size() == cell.marked.size())) {
       continue;
     }
+    const std::string others = remaining(cell.shape, names);
     notes.push_back(cell.label + ": " + joined(names) +
                     (names.size() == 1 ? " has the variance " : " have the variance ") +
                     to_text(first->value) + " in " + of_rows(first->rows, cell.rows) +
                     ", the first in " + first->first + " (" + reasons[sign] +
-                    "): for a verdict on the others, add --components " +
-                    remaining(cell.shape, names));
+                    (others.empty()
+                         ? "): write variances of the errors"
+                         : "): for a verdict on the others, add --components " + others));
   }
 }
 

@@ -91,7 +91,7 @@ TEST_F(SlowReaders, TheModuleNamesItsArraysAndReadsTheTables) {
 
 TEST_F(SlowReaders, Figure) {
   if (!python_has("xarray, netCDF4, h5py, matplotlib"))
-    GTEST_SKIP() << "python3-matplotlib or what montecarta.py needs is not installed";
+    GTEST_SKIP() << "python3-matplotlib or what the package montecarta needs is not installed";
   const auto outcome = run_program("HDF5_USE_FILE_LOCKING= /usr/bin/python3 -B " + kReaders +
                                    "/anees_figure.py " + path_.string() + " " +
                                    (folder_ / "anees.svg").string() + " " + MONTECARTA_EXECUTABLE);

@@ -17,6 +17,8 @@ cpack --config "$build/CPackConfig.cmake" -B "$folder" >cpack.log ||
 package=$(ls "$folder"/montecarta_*_*.deb)
 grep -q libhdf5 <<<"$(dpkg-deb -f "$package" Depends)" ||
   fail "dependencies: $(dpkg-deb -f "$package")"
+grep -q python3-h5py <<<"$(dpkg-deb -f "$package" Recommends)" ||
+  fail "recommendations: $(dpkg-deb -f "$package")"
 dpkg-deb -x "$package" root
 
 # What is shipped is found beside the program, not in the source tree.
@@ -34,8 +36,16 @@ done
 /usr/bin/python3 -B -c 'import montecarta_filter' || fail "montecarta_filter.py"
 if /usr/bin/python3 -B -c 'import h5py' 2>/dev/null; then
   /usr/bin/python3 -B -c 'import montecarta; print(montecarta.open("first_study.h5").labels)' |
-    grep -q ekf_slam || fail "montecarta.py"
+    grep -q ekf_slam || fail "montecarta"
+  (unset MONTECARTA
+   /usr/bin/python3 -B -c 'import montecarta, numpy as np, sys
+assert montecarta.program() == sys.argv[1], montecarta.program()
+errors = np.random.default_rng(1).standard_normal((300, 100, 2))
+small = np.broadcast_to(0.8 * np.eye(2), (100, 2, 2))
+assert montecarta.judge(errors, small).answer == "optimistic"
+' "$folder/root/usr/bin/montecarta") || fail "montecarta.judge"
 fi
+[ -e "$PYTHONPATH/montecarta/py.typed" ] || fail "no py.typed"
 
 # A program with a filter of its own, built of what the package holds.
 cmake -S "$source/outside_filter" -B mine -DCMAKE_PREFIX_PATH="$folder/root/usr" >cmake.log 2>&1 ||

@@ -26,6 +26,11 @@ class Arrays {
     h5::write(h5::create_dataset(file_, name, Element::f64, shape), Element::f64, values.data());
     return *this;
   }
+  /// As Octave saves a matrix.
+  Arrays& with_group(const std::string& name, const h5::Shape& shape, std::vector<double> values) {
+    const h5::Handle group = h5::create_group(file_, name);
+    return with(name + "/value", shape, std::move(values));
+  }
   Arrays& called(const std::string& names) {
     h5::put_text(file_, "names", names);
     return *this;
@@ -66,6 +71,18 @@ TEST_F(EstimateArraysTest, HaveErrorsOfWhichNaNIsMissing) {
   const StateRows truth = arrays.truth(1, rows.shape);
   EXPECT_THAT(truth.time, ElementsAre(0.5, 1.0, 1.5)) << "a run that ends early is seen to";
   EXPECT_EQ(truth.state[0], Eigen::Vector2d(0, 0));
+}
+
+TEST_F(EstimateArraysTest, MayBeSavedByOctaveWhoseVectorsHaveTwoAxes) {
+  Arrays(path_)
+      .with_group("error", {2, 3, 1}, {1, 2, 3, 4, 5, 6})
+      .with_group("covariance", {2, 3, 1, 1}, {0.5})
+      .with_group("time", {1, 3}, {0.5, 1.0, 1.5});
+  const StateRows rows = EstimateArrays(path_, "ekf").estimates(0, 1);
+  EXPECT_THAT(rows.time, ElementsAre(0.5, 1.0, 1.5));
+  EXPECT_EQ(rows.state[2](0), 6);
+  Arrays(path_).with_group("error", {2, 3}, {1}).with("covariance", {2, 3, 1, 1}, {1});
+  EXPECT_THAT(complaint(), HasSubstr("error has the axes {2, 3}"));
 }
 
 TEST_F(EstimateArraysTest, HaveMeansWithATruthOfAllRuns) {
