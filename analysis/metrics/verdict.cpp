@@ -47,8 +47,7 @@ class VerdictOverRuns final : public MergedSums<VerdictOverRuns> {
     const NeesSeries& series = cell.nees.front().series;
     cell.verdict.samples = series.samples;
     cell.verdict.unusable = series.unusable;
-    // A scan without an innovation has observed nothing.
-    cell.verdict.missing = criteria_->innovation_components > 0 ? 0 : series.missing;
+    cell.verdict.missing = criteria_->has_own_scans ? 0 : series.missing;
   }
   static constexpr auto parts() { return std::tuple(added(&VerdictOverRuns::sums_)); }
 

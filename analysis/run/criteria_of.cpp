@@ -91,6 +91,7 @@ RunCriteria criteria_of(const ResultFile& file, double level, double within) {
     criteria.components = imported.components;
     criteria.units = imported.units;
     criteria.by_upper_bounds = !imported.pair.empty();
+    criteria.has_own_scans = imported.state == kInnovationsAlone || !imported.windows.empty();
     if (imported.state == kInnovationsAlone)
       criteria.innovation_components = imported.components.size();
     criteria.share_of_runs = 1.0;  // a file of imported estimates is no shard

@@ -33,6 +33,7 @@ ImportedState imported_state(const StoredCell& cell) {
   }
   found.state = setting("state");
   found.convention = setting("error");
+  found.windows = setting("windows");
   found.moved = setting("moved");
   found.adds_truth_covariance = setting("truth_covariance") == "added";
   found.pair = setting("pair");

@@ -18,8 +18,9 @@ struct ImportedState {
   /// "pose", "pose in space", "vector" or kInnovationsAlone; empty for filters of this program.
   std::string state;
   std::string convention;  ///< name of the convention of the error, among kErrorConventions
-  std::string gate;   ///< limit of the NIS of innovations that are left; empty if there is none
-  std::string moved;  ///< what was moved of the truths onto the first estimates; empty if nothing
+  std::string windows;  ///< [s] lengths of the windows whose increments are judged; empty if none
+  std::string gate;     ///< limit of the NIS of innovations that are left; empty if there is none
+  std::string moved;    ///< what was moved of the truths onto the first estimates; empty if nothing
   bool adds_truth_covariance = false;  ///< whether covariances of the truths were added
   /// The two estimators whose difference is judged, by the largest covariance that it can have;
   /// empty if errors are judged.

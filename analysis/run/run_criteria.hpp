@@ -38,6 +38,7 @@ struct RunCriteria {
   ErrorFrame frame = ErrorFrame::of_truth;
   /// Number of components if the judged errors are innovations, which are white; else 0.
   std::size_t innovation_components = 0;
+  bool has_own_scans = false;    ///< whether a cell has no estimate at scans of other cells
   bool by_upper_bounds = false;  ///< whether covariances are only bounds from above
   bool calibrates = false;       ///< whether the PITs of errors are judged: only with matched noise
   /// {interim analysis} number of runs, if cells stop when their verdict is known; else empty.

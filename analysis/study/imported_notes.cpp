@@ -48,6 +48,9 @@ std::vector<std::string> imported_notes(const StudyAnalysis& study) {
             {{"convention", convention},
              {"meaning", sentence_on(study.imported.state, convention)},
              {"components", components_text(study)}})};
+  if (!study.imported.windows.empty())
+    notes = {prose("components", "windows",
+                   {{"windows", study.imported.windows}, {"components", components_text(study)}})};
   if (!study.imported.pair.empty()) {
     notes.push_back(prose("components", "pair", {{"pair", study.imported.pair}}));
     return notes;

@@ -13,6 +13,7 @@
 #include "experiments/commands/stored_result.hpp"
 #include "experiments/judging/estimate_arrays.hpp"
 #include "experiments/judging/estimate_files.hpp"
+#include "experiments/judging/increments.hpp"
 #include "experiments/judging/innovation_files.hpp"
 #include "experiments/judging/judged_study.hpp"
 #include "experiments/judging/run_files.hpp"
@@ -47,6 +48,20 @@ EqualTimes equal_times_of(const Arguments& arguments) {
   return *said == "first" ? EqualTimes::keep_first : EqualTimes::keep_last;
 }
 
+/// The increasing lengths [s] in a list with commas.
+std::vector<double> windows_in(const std::string& list) {
+  std::vector<double> windows;
+  for (const std::string& text : split(list, ',')) {
+    const auto window = to_number(text);
+    if (!window || !(*window > 0.0) || (!windows.empty() && *window <= windows.back())) {
+      throw StudyError("--windows " + excerpt(list) +
+                       ": not a list of increasing lengths in s: write e.g. 1,10,60");
+    }
+    windows.push_back(*window);
+  }
+  return windows;
+}
+
 JudgingOptions judging_options(const Arguments& arguments) {
   JudgingOptions options;
   options.output = arguments.text("output").value();
@@ -59,6 +74,7 @@ JudgingOptions judging_options(const Arguments& arguments) {
   options.equal_times = equal_times_of(arguments);
   if (const auto name = arguments.text("anchor")) options.anchor = anchor_named(*name);
   options.adds_truth_covariance = arguments.has("truth-cov");
+  if (const auto windows = arguments.text("windows")) options.windows = windows_in(*windows);
   options.are_innovations = arguments.has("innovations");
   options.gate = arguments.number("gate", 0.01, 1e6);
   if (const auto names = arguments.text("components")) options.components = split(*names, ',');
@@ -172,7 +188,13 @@ std::unique_ptr<EstimateSource> source_of(const Arguments& arguments, JudgingOpt
 int judge_command(const Arguments& arguments) {
   JudgingOptions options = judging_options(arguments);
   refuse_input_as_output(options.output, arguments.operands());
-  const std::unique_ptr<EstimateSource> source = source_of(arguments, options);
+  std::unique_ptr<EstimateSource> source = source_of(arguments, options);
+  if (!options.windows.empty()) {
+    constexpr std::array<std::string_view, 4> kOfWhole = {"anchor", "pair", "truth-cov",
+                                                          "innovations"};
+    refuse_options(arguments, kOfWhole, "--windows (it judges increments of poses by their truth)");
+    source = std::make_unique<Increments>(std::move(source), options);
+  }
   const std::vector<std::string> notes = judge_estimates(*source, options);
   const ResultFile file(options.output);
   print_summary(std::cout, analyze(file, kUsualLevel, parallel_of(arguments)),

@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -128,6 +129,31 @@ std::string nees_column(Convention convention) { return stored(convention).colum
 std::span<const Convention> conventions_of(StateKind kind) {
   if (kind == StateKind::pose_in_space) return kConventions;
   return std::span(kConventions).first(kind == StateKind::vector ? 1 : kConventionsInPlane);
+}
+
+ErrorConvention stated_error(const StateShape& shape, const std::filesystem::path& path,
+                             std::optional<ErrorConvention> said) {
+  const auto known = conventions_of(shape.kind);
+  const std::string likeness = likeness_to_pose(shape);
+  if (!said && known.size() == 1 && likeness.empty()) return known.front();
+  if (!said && known.size() == 1) {
+    throw StudyError("judge: --error is missing (" + path.string() +
+                     " is judged as a vector, mean - truth: " + likeness +
+                     "): give --error world if it is a vector");
+  }
+  if (!said) {
+    throw StudyError(
+        "judge: --error is missing (the verdict depends on the error that the covariance "
+        "describes): give --error world, body, right-invariant or, in space, world-body, which "
+        "montecarta judge --help explains");
+  }
+  if (std::ranges::find(known, *said) != known.end()) return *said;
+  if (known.size() > 1) return ErrorConvention::world;  // in the plane, world-body is world
+  throw StudyError("--error " + name_of(*said) + ": not of a vector (" + path.string() +
+                   " has no pose, and only poses have frames" +
+                   (likeness.empty() ? "" : "; " + likeness) +
+                   "): name the columns of the pose, or judge the error mean - truth of the vector "
+                   "by --error world");
 }
 
 Eigen::VectorXd error_of(const StateShape& shape, Convention convention,

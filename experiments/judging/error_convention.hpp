@@ -5,6 +5,8 @@
 
 #include <Eigen/Core>
 
+#include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -21,6 +23,11 @@ std::string nees_column(ErrorConvention convention);
 /// The conventions that a state may have: all for a pose in space, all but `world_body` for a pose
 /// in the plane, where that is `world`, and only `world` for a vector.
 std::span<const ErrorConvention> conventions_of(StateKind kind);
+
+/// The convention that the user gave, or the only one that the state may have. `path` is the
+/// file of the estimates. Throws StudyError if none was given and there are several.
+ErrorConvention stated_error(const StateShape& shape, const std::filesystem::path& path,
+                             std::optional<ErrorConvention> said);
 
 /// The error {d} of an estimate under a convention that its state may have. `mean` and `truth` are
 /// in the order of StateShape::columns.

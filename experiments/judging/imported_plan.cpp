@@ -49,6 +49,11 @@ TextPairs import_settings(const StateShape& shape, const JudgingOptions& options
                         {"components", joined(components)},
                         {"units", joined(units)}};
   if (options.gate) settings.emplace_back("gate", to_text(*options.gate));
+  if (!options.windows.empty()) {
+    std::vector<std::string> windows;
+    for (const double window : options.windows) windows.push_back(to_text(window));
+    settings.emplace_back("windows", joined(windows));
+  }
   if (options.anchor) {
     settings.emplace_back("anchor", name_of(*options.anchor));
     settings.emplace_back("moved", moved_by(*options.anchor));

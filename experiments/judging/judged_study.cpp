@@ -375,8 +375,7 @@ std::vector<MatchedRows> matched_run(const EstimateSource& source, std::size_t r
     auto truths = truths_for(rows, path, truth, notes);
     std::vector<std::size_t> scans = all.clock.scans_of(rows.time);
     cells.push_back({std::move(rows), std::move(scans), std::move(truths)});
-    // A scan without an innovation has observed nothing, and misses none.
-    if (!notes.options->are_innovations) notes.missing += missing_in(cells.back(), all.clock);
+    if (!notes.options->have_own_scans()) notes.missing += missing_in(cells.back(), all.clock);
   }
   return cells;
 }
@@ -403,7 +402,7 @@ std::vector<std::string> write_runs(const EstimateSource& source, const JudgingO
     }
     for (std::size_t c = 0; c < cells.size(); ++c) {
       RunRecord record = record_of(layouts[c], cells[c], scan_truths, *options.convention, judged);
-      if (options.are_innovations) {
+      if (options.have_own_scans()) {
         record.mark_complete(kUnknownCost);
       } else {
         end_run(cells[c], source.has_errors() ? nullptr : &truth, all.clock, c, record);
@@ -414,32 +413,6 @@ std::vector<std::string> write_runs(const EstimateSource& source, const JudgingO
   return notes.all(source, all);
 }
 
-/// The convention that the user gave, or the only one that the state may have. Throws StudyError if
-/// none was given and there are several.
-ErrorConvention stated_error(const Overview& all, std::optional<ErrorConvention> said) {
-  const auto known = conventions_of(all.rows.shape.kind);
-  const std::string likeness = likeness_to_pose(all.rows.shape);
-  if (!said && known.size() == 1 && likeness.empty()) return known.front();
-  if (!said && known.size() == 1) {
-    throw StudyError("judge: --error is missing (" + all.path.string() +
-                     " is judged as a vector, mean - truth: " + likeness +
-                     "): give --error world if it is a vector");
-  }
-  if (!said) {
-    throw StudyError(
-        "judge: --error is missing (the verdict depends on the error that the covariance "
-        "describes): give --error world, body, right-invariant or, in space, world-body, which "
-        "montecarta judge --help explains");
-  }
-  if (std::ranges::find(known, *said) != known.end()) return *said;
-  if (known.size() > 1) return ErrorConvention::world;  // in the plane, world-body is world
-  throw StudyError("--error " + name_of(*said) + ": not of a vector (" + all.path.string() +
-                   " has no pose, and only poses have frames" +
-                   (likeness.empty() ? "" : "; " + likeness) +
-                   "): name the columns of the pose, or judge the error mean - truth of the vector "
-                   "by --error world");
-}
-
 }  // namespace
 
 std::vector<std::string> judge_estimates(const EstimateSource& source,
@@ -448,7 +421,7 @@ std::vector<std::string> judge_estimates(const EstimateSource& source,
   JudgingOptions options = given;
   options.convention = source.has_errors() || !has_states(all)
                            ? ErrorConvention::world
-                           : stated_error(all, given.convention);
+                           : stated_error(all.rows.shape, all.path, given.convention);
   const StudyPlan plan = imported_plan(source, all.rows, all.clock.times(), options);
   ResultWriter writer =
       ResultWriter::create(options.output, plan, options.provenance, options.existing);

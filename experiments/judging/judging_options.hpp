@@ -26,11 +26,16 @@ struct JudgingOptions {
   std::string pair =
       {};  ///< two estimators, the second of which is in place of the truth; or empty
   bool are_innovations = false;              ///< whether the files have innovations alone
+  std::vector<double> windows = {};          ///< [s] increments over these are judged; or empty
   std::optional<double> gate = {};           ///< limit of the NIS of innovations that are left
   std::vector<std::string> components = {};  ///< names of those that are judged; empty: all
   EqualTimes equal_times = EqualTimes::refuse;
   Existing existing = Existing::refuse;
   TextPairs provenance;
+  /// Whether cells have scans of their own, so that others are not missing: those of a sensor, or
+  /// the ends of windows.
+  bool have_own_scans() const { return are_innovations || !windows.empty(); }
+
   std::optional<double> within;  ///< margin of consistent ratios; not stored if not given
 };
 

@@ -260,7 +260,7 @@ def judge_estimates(estimates: ArrayLike, truths: ArrayLike, covariances: ArrayL
                     nis: ArrayLike | None = None,
                     names: str | Sequence[str] = ("x_m", "y_m", "heading_rad"),
                     within: float = 1.1, *, nis_dof: ArrayLike | None = None,
-                    components: Sequence[str] | None = None,
+                    components: Sequence[str] | None = None, anchor: str | None = None,
                     path: str | os.PathLike[str] | None = None) -> Judgement:
     """Judges estimates by their truths, of poses by the error that the covariance describes.
 
@@ -274,11 +274,14 @@ def judge_estimates(estimates: ArrayLike, truths: ArrayLike, covariances: ArrayL
     covariances : array_like, {run, scan, d, d}, or {scan, d, d} if all runs have the same
         Covariances [products of the units of the components], for poses position first.
     error : str, optional
-        "world", "body" or "right-invariant": the error of the covariance of a pose (`montecarta
-        judge --help`). Needed for poses.
+        "world", "body", "right-invariant" or, in space, "world-body": the error of the covariance
+        of a pose (`montecarta judge --help`). Needed for poses.
     names : sequence of str, {column}, or a str with commas
         Columns of the state. ["x_m", "y_m", "z_m", "qx", "qy", "qz", "qw"] is a pose in space; its
         covariance has d = 6 components.
+    anchor : str, optional
+        "first", "yaw" or "se3": what of each truth is moved onto the first estimate of its run:
+        position, position and heading, or position and rotation. Without it nothing is moved.
 
     Returns
     -------
@@ -309,6 +312,7 @@ def judge_estimates(estimates: ArrayLike, truths: ArrayLike, covariances: ArrayL
     arrays = {"mean": states.array, "truth": true_states} | _beside(
         states, d, covariances, times, nis, nis_dof)
     options = [] if error is None else ["--error", error]
+    options += [] if anchor is None else ["--anchor", anchor]
     return _judge(arrays, names, components, within, path, options)
 
 

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Errors of increments over windows of time.
+#include "engine/records/result_file.hpp"
+#include "experiments/text/words.hpp"
+#include "tests/doubles/matchers.hpp"
+#include "tests/experiments/commands/program.hpp"
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <cmath>
+
+namespace montecarta::experiments {
+namespace {
+
+using Eigen::Matrix3d, Eigen::Vector3d;
+
+/// `a` followed by `b`, which is seen from `a`.
+Vector3d followed(const Vector3d& a, const Vector3d& b) {
+  Vector3d c;
+  c << a.head<2>() + Eigen::Rotation2Dd(a(2)) * Eigen::Vector2d(b.head<2>()), a(2) + b(2);
+  return c;
+}
+
+Matrix3d adjoint(const Vector3d& pose) {
+  Matrix3d found = Matrix3d::Identity();
+  found.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(pose(2)).toRotationMatrix();
+  found(0, 2) = pose.y();
+  found(1, 2) = -pose.x();
+  return found;
+}
+
+Vector3d inverse(const Vector3d& pose) {
+  Vector3d found;
+  found << -(Eigen::Rotation2Dd(-pose(2)) * Eigen::Vector2d(pose.head<2>())), -pose(2);
+  return found;
+}
+
+const Vector3d kStep(1.0, 0.1, 0.3);
+const Matrix3d kOfStep{{0.04, 0.01, 0.0}, {0.01, 0.02, 0.001}, {0.0, 0.001, 0.003}};
+
+/// Odometry of eleven steps that are each kStep, with the covariance kOfStep in the body, under a
+/// convention. The true steps are longer by 0.1 m.
+class JudgeWindows : public BlinkProgram {
+ protected:
+  void write_odometry(const std::string& convention) const {
+    std::string text = "time_s,x_m,y_m,heading_rad", truths = text + "\n";
+    for (int k = 0; k < 9; ++k)
+      text += ",cov_" + std::to_string(k / 3) + "_" + std::to_string(k % 3);
+    Vector3d mean(5.0, -3.0, 1.0), truth = mean;
+    Matrix3d P = 0.5 * Matrix3d::Identity();
+    for (int k = 0; k < 12; ++k) {
+      Matrix3d to = Matrix3d::Identity();
+      if (convention == "right-invariant") to = adjoint(mean);
+      if (convention == "world") to.topLeftCorner<2, 2>() = adjoint(mean).topLeftCorner<2, 2>();
+      const Matrix3d written = to * P * to.transpose();
+      text += "\n" + std::to_string(k);
+      for (const double value : mean) text += "," + to_text(value);
+      for (const double value : written.reshaped()) text += "," + to_text(value);
+      truths += std::to_string(k);
+      for (const double value : truth) truths += "," + to_text(value);
+      truths += "\n";
+      mean = followed(mean, kStep);
+      truth = followed(truth, kStep + Vector3d(0.1, 0.0, 0.0));
+      const Matrix3d carried = adjoint(inverse(kStep));
+      P = carried * P * carried.transpose() + kOfStep;
+    }
+    write("odometry.csv", text + "\n");
+    write("truth.csv", truths);
+  }
+  Called judged(const std::vector<std::string>& more) const {
+    return call_with({"judge", "odometry.csv", "--truth", "truth.csv", "-o", "mine.h5", "--force"},
+                     more);
+  }
+};
+
+// Law: the covariance of an increment is what was added since its start, under every convention.
+TEST_F(JudgeWindows, HaveTheCovarianceThatWasAdded) {
+  for (const std::string convention : {"world", "body", "right-invariant"}) {
+    write_odometry(convention);
+    const Called called = judged({"--error", convention, "--windows", "1,5"});
+    ASSERT_EQ(called.code, 0) << called.err;
+    EXPECT_THAT(called.out, AllOf(HasSubstr("increments over 1, 5 s (x, y, heading)"),
+                                  HasSubstr("odometry.1s"), Not(HasSubstr("missing"))));
+    const ResultFile file(folder_ / "mine.h5");
+    ASSERT_EQ(file.cells().size(), 2u);
+    const std::size_t scans = file.times().size();
+    ASSERT_EQ(scans, 11u);
+    std::vector<double> error(3 * scans), P(9 * scans);
+    file.read(file.cells()[0], "error", 0, std::span(error));
+    file.read(file.cells()[0], "error_covariance", 0, std::span(P));
+    for (std::size_t s = 0; s < scans; ++s) {
+      EXPECT_LT((Matrix3d::Map(P.data() + 9 * s) - kOfStep).norm(), 1e-9) << convention << s;
+      EXPECT_NEAR(error[3 * s], -0.1, 1e-9) << convention << s;
+    }
+    file.read(file.cells()[1], "error", 0, std::span(error));
+    EXPECT_TRUE(std::isnan(error[3 * 3])) << "five seconds are not over";
+    EXPECT_FALSE(std::isnan(error[3 * 4]));
+  }
+}
+
+TEST_F(JudgeWindows, AreOfPosesAndIncrease) {
+  write_odometry("body");
+  EXPECT_THAT(judged({"--windows", "1,5"}).err, HasSubstr("--error is missing"));
+  EXPECT_THAT(judged({"--error", "body", "--windows", "5,1"}).err,
+              HasSubstr("--windows 5,1: not a list of increasing lengths"));
+  EXPECT_THAT(judged({"--error", "body", "--windows", "1", "--anchor", "yaw"}).err,
+              HasSubstr("--anchor: not beside --windows"));
+  write("odometry.csv", "time_s,a,cov_a_a\n1,0,1\n2,0,1\n");
+  write("truth.csv", "time_s,a\n1,0\n2,0\n");
+  EXPECT_THAT(judged({"--windows", "1"}).err, HasSubstr("--windows is for poses"));
+}
+
+}  // namespace
+}  // namespace montecarta::experiments
