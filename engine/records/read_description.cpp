@@ -5,7 +5,7 @@
 #include "engine/records/check_description.hpp"
 #include "engine/records/result_format.hpp"
 #include "engine/records/result_schema.hpp"
-#include "engine/records/seal.hpp"
+#include "engine/records/structure.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -107,8 +107,10 @@ std::optional<SummedRuns> read_summed_runs(const h5::Handle& file,
 
 }  // namespace
 
-ResultDescription read_description(const h5::Handle& file, const std::filesystem::path& path) {
+ResultDescription read_description(const h5::Handle& file, const std::filesystem::path& path,
+                                   Seal seal) {
   require_result_file(file, path);
+  if (seal == Seal::absent) check_structure(file, path);
   ResultDescription result;
   read_schema(file, result);
   result.has_truth = h5::has(file, "truth");
@@ -122,8 +124,8 @@ ResultDescription read_description(const h5::Handle& file, const std::filesystem
 }
 
 ResultDescription read_description(const std::filesystem::path& path) {
-  check_seal(path);
-  return read_description(h5::open_file(path), path);
+  const Seal seal = check_seal(path);
+  return read_description(h5::open_file(path), path, seal);
 }
 
 }  // namespace montecarta::engine

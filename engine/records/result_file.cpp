@@ -5,6 +5,7 @@
 #include "engine/records/read_description.hpp"
 #include "engine/records/result_format.hpp"
 #include "engine/records/seal.hpp"
+#include "engine/records/stored_runs.hpp"
 #include "engine/records/sum_groups.hpp"
 #include "engine/text/visible_text.hpp"
 
@@ -57,8 +58,12 @@ ResultFile::ResultFile(const std::filesystem::path& path)
       has_seal_(check_seal(path_) == Seal::holds),
       file_(h5::open_file(path_)),
       bytes_(path_, PosixFile::Mode::read),
-      description_(read_description(file_, path_)) {
-  if (has_seal_) slabs_ = find_slabs(path_, description_);
+      description_(read_description(file_, path_, has_seal_ ? Seal::holds : Seal::absent)) {
+  if (has_seal_) {
+    slabs_ = find_slabs(path_, description_);
+  } else if (h5::numbers(file_, "format_version").back() >= format::kMinorOfSeal) {
+    check_stored_runs(file_, description_, path_);
+  }
 }
 
 bool ResultFile::has_errors() const {

@@ -11,11 +11,14 @@ namespace montecarta::engine::format {
 
 inline constexpr std::string_view kFiletype = "montecarta-results";
 inline constexpr std::uint64_t kMajor = 1;           ///< increased when a meaning changes
-inline constexpr std::uint64_t kMinor = 10;          ///< increased when something is added
+inline constexpr std::uint64_t kMinor = 11;          ///< increased when something is added
 inline constexpr std::size_t kSessionsBytes = 4096;  ///< size of the log of resumptions
 inline constexpr const char* kSums = "sums";         ///< group of the sums over groups of runs
 /// Dataset in the timing of a cell with the processor time of every run in sums.
 inline constexpr const char* kSumSeconds = "sums_cpu_seconds";
+inline constexpr const char* kStructure = "structure";  ///< dataset in /provenance
+inline constexpr std::uint64_t kMinorOfStructure = 11;  ///< version from which every file has it
+inline constexpr std::uint64_t kMinorOfSeal = 5;        ///< the same of the seal
 inline constexpr const char* kFull = "full";  ///< group of a cell for the columns of full runs only
 inline constexpr const char* kFullRun = "full_run";  ///< first axis of those columns
 /// Attribute: number of full runs in the study.

@@ -49,7 +49,7 @@ void print_study(const ResultFile& file) {
                     {"seal", check_seal(file.path()) == Seal::holds
                                  ? "holds"
                                  : "none: an older montecarta or another program wrote the file, "
-                                   "and damage may go unnoticed"},
+                                   "which was checked when it was opened"},
                     {"study", file.study_name() + ", seed " + std::to_string(file.seed())},
                     {"SHA-256", file.study_sha256()}});
 }
