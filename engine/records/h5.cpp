@@ -29,7 +29,6 @@ void disable_error_printing() {
 Handle file_access() {
   Handle access(H5Pcreate(H5P_FILE_ACCESS));
   H5Pset_fclose_degree(access.id(), H5F_CLOSE_STRONG);
-  H5Pset_libver_bounds(access.id(), H5F_LIBVER_V18, H5F_LIBVER_V18);
   H5Pset_alignment(access.id(), kLarge, kPage);
   H5Pset_file_locking(access.id(), false, true);
   return access;
@@ -141,7 +140,9 @@ std::string library_version() {
 
 Handle create_file(const std::filesystem::path& path) {
   disable_error_printing();
-  Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, file_creation().id(), file_access().id()));
+  const Handle access = file_access();
+  H5Pset_libver_bounds(access.id(), H5F_LIBVER_V18, H5F_LIBVER_V18);
+  Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, file_creation().id(), access.id()));
   if (file.id() < 0)
     throw RunError(path.string() +
                    ": cannot create it (HDF5 refused; the disk may be full): check the disk");

@@ -2,10 +2,9 @@
 #include "engine/records/result_file.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/records/check_file.hpp"
 #include "engine/records/read_description.hpp"
 #include "engine/records/result_format.hpp"
-#include "engine/records/seal.hpp"
-#include "engine/records/stored_runs.hpp"
 #include "engine/records/sum_groups.hpp"
 #include "engine/text/visible_text.hpp"
 
@@ -55,15 +54,11 @@ bool read_elements(const PosixFile& file, std::uint64_t offset, Element element,
 
 ResultFile::ResultFile(const std::filesystem::path& path)
     : path_(existing(path)),
-      has_seal_(check_seal(path_) == Seal::holds),
+      has_seal_(check_file(path_) == Seal::holds),
       file_(h5::open_file(path_)),
       bytes_(path_, PosixFile::Mode::read),
-      description_(read_description(file_, path_, has_seal_ ? Seal::holds : Seal::absent)) {
-  if (has_seal_) {
-    slabs_ = find_slabs(path_, description_);
-  } else if (h5::numbers(file_, "format_version").back() >= format::kMinorOfSeal) {
-    check_stored_runs(file_, description_, path_);
-  }
+      description_(read_description(file_, path_)) {
+  if (has_seal_) slabs_ = find_slabs(path_, description_);
 }
 
 bool ResultFile::has_errors() const {

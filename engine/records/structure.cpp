@@ -153,7 +153,8 @@ void put_structure(const h5::Handle& file) {
                "type, axes and XXH3 of attributes and contents of all other objects");
 }
 
-void check_structure(const h5::Handle& file, const std::filesystem::path& path) {
+void check_structure(const h5::Handle& file, std::uint64_t minor_version,
+                     const std::filesystem::path& path) {
   const auto refuse = [&](const std::string& why) {
     throw StudyError(path.string() + ": changed by another program (" + why +
                      "): take the file as montecarta wrote it, or run the study again");
@@ -164,7 +165,7 @@ void check_structure(const h5::Handle& file, const std::filesystem::path& path) 
     const auto stored = objects_from(h5::read_text(h5::open_dataset(file, kName)));
     const std::string why = difference(stored, objects_in(file));
     if (!why.empty()) refuse(why);
-  } else if (h5::numbers(file, "format_version").back() >= format::kMinorOfStructure) {
+  } else if (minor_version >= format::kMinorOfStructure) {
     refuse("'" + kName + "' is gone");
   }
 }

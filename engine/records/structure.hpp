@@ -3,6 +3,7 @@
 
 #include "engine/records/h5.hpp"
 
+#include <cstdint>
 #include <filesystem>
 
 /// The structure of a result file, stored in the file itself: all groups and datasets with types,
@@ -15,6 +16,7 @@ void put_structure(const h5::Handle& file);
 
 /// Throws StudyError that names the first difference between a file and its stored structure. Files
 /// of versions before 1.11 have none and are not checked.
-void check_structure(const h5::Handle& file, const std::filesystem::path& path);
+void check_structure(const h5::Handle& file, std::uint64_t minor_version,
+                     const std::filesystem::path& path);
 
 }  // namespace montecarta::engine

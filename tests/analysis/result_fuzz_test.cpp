@@ -4,7 +4,7 @@
 #include "analysis/render/tables/terminal.hpp"
 #include "analysis/study/study_analysis.hpp"
 #include "engine/errors.hpp"
-#include "engine/records/read_description.hpp"
+#include "engine/records/check_file.hpp"
 #include "engine/records/result_layout.hpp"
 #include "engine/records/shard.hpp"
 #include "tests/analysis/synthetic_result.hpp"

@@ -3,8 +3,8 @@
 #include "engine/records/check_description.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/records/check_file.hpp"
 #include "engine/records/merge.hpp"
-#include "engine/records/read_description.hpp"
 #include "engine/records/result_file.hpp"
 #include "engine/records/result_layout.hpp"
 #include "engine/records/result_schema.hpp"

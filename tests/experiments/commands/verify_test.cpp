@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // verify and replay, which compute stored runs again.
+#include "engine/records/check_file.hpp"
 #include "engine/records/h5.hpp"
-#include "engine/records/read_description.hpp"
 #include "engine/records/result_file.hpp"
 #include "engine/records/result_layout.hpp"
 #include "experiments/text/words.hpp"

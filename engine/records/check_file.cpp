@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/records/stored_runs.hpp"
+#include "engine/records/check_file.hpp"
 
 #include "engine/errors.hpp"
 #include "engine/records/fingerprint.hpp"
+#include "engine/records/forked_reader.hpp"
+#include "engine/records/h5.hpp"
+#include "engine/records/read_description.hpp"
 #include "engine/records/result_format.hpp"
 #include "engine/records/run_record.hpp"
+#include "engine/records/structure.hpp"
 
 #include <span>
 #include <string>
@@ -47,6 +51,8 @@ std::vector<T> per_run(const h5::Handle& file, const std::string& name, Element 
   return values;
 }
 
+/// Compares all runs with their fingerprints. HDF5 reads the numbers, because another program may
+/// have packed them.
 class RunCheck {
  public:
   RunCheck(const h5::Handle& file, const ResultDescription& description,
@@ -122,13 +128,33 @@ class RunCheck {
   std::vector<bool> has_record_;  ///< {run} whether any cell has the run
 };
 
-}  // namespace
-
-void check_stored_runs(const h5::Handle& file, const ResultDescription& description,
-                       const std::filesystem::path& path) {
+/// Throws StudyError if the structure or a run of a file without a seal has changed.
+void check_unsealed(const std::filesystem::path& path) {
+  const h5::Handle file = h5::open_file(path);
+  const std::uint64_t minor_version = minor_version_of(file, path);
+  check_structure(file, minor_version, path);
+  const ResultDescription description = read_description(file, path);
+  if (minor_version < format::kMinorOfSeal) return;
   RunCheck check(file, description, path);
   for (const StoredCell& cell : description.cells) check.check_cell(cell);
   check.check_truth();
+}
+
+}  // namespace
+
+Seal check_file(const std::filesystem::path& path) {
+  const Seal seal = check_seal(path);
+  if (seal == Seal::holds) return seal;
+  ForkedReader(path, [&](std::string_view) {
+    check_unsealed(path);
+    return "";
+  }).ask("");
+  return seal;
+}
+
+ResultDescription read_description(const std::filesystem::path& path) {
+  check_file(path);
+  return read_description(h5::open_file(path), path);
 }
 
 }  // namespace montecarta::engine
