@@ -188,6 +188,15 @@ TEST_F(SlowSummedStudy, IsRefusedIfAnotherVersionWroteItsSums) {
   expect_refused({"analyze", "other.h5"}, "another layout");
 }
 
+TEST_F(SlowSummedStudy, LeavesNoFolderIfTheDiskIsTooSmall) {
+  const Called called =
+      run("out.h5", {"--set", "scenario.control_rate=1e5", "--set", "scenario.scan_rate=1e5",
+                     "--set", "record.rate=step", "--set", "record.columns=sums, map, particles"});
+  EXPECT_EQ(called.code, 1);
+  EXPECT_THAT(called.err, testing::HasSubstr("are needed"));
+  EXPECT_FALSE(exists("out.h5.groups"));
+}
+
 /// The seal of such a file holds.
 TEST_F(SlowSummedStudy, NamesTheFileWhereSumsContradictEachOther) {
   ASSERT_EQ(run("rows.h5", {"--runs", "0:16", "--set", "record.columns=pose,covariance", "--set",
