@@ -99,6 +99,11 @@ struct CellTask {
   /// many runs.
   void put(CellSums sums) {
     sums.put(cell);
+    for (const NeesResult& nees : cell.nees) {
+      expect(std::ranges::count(kErrorBlocks, nees.block) == 1 &&
+                 std::ranges::count(kMoments, nees.moments) == 1,
+             "a NEES of no known error");
+    }
     cell.verdict.runs = cell.complete + cell.failures.size();
     cell.verdict.failed = cell.failures.size();
   }
@@ -220,10 +225,11 @@ auto with_sums_of(const ResultFile& file, const Work& work) {
     throw;
   } catch (const RunError&) {
     throw;
-  } catch (const std::exception& error) {
+  } catch (const std::exception&) {
     if (!file.has_sums()) throw;
-    throw StudyError(file.path().string() + ": its sums contradict each other (" + error.what() +
-                     "): take a copy that is whole, or run the study again");
+    throw StudyError(file.path().string() +
+                     ": its sums contradict each other (damage, or another program wrote them): "
+                     "take a copy that is whole, or run the study again");
   }
 }
 

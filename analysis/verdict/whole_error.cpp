@@ -299,6 +299,9 @@ void WholeError::add_largest_test(const ErrorNames& names, std::vector<MemberTes
   const SummaryOf& near = squares.stretch.empty() ? squares.whole : squares.stretch[stretch];
   const double ratio = std::max(1.0, near.result().mean);
   const double tail = normal_cdf(-largest_.deviations / std::sqrt(ratio));
+  expect(largest_.place.component < names.components.size() &&
+             largest_.place.scan < names.times.size(),
+         "a largest error of a component and a scan");
   Member member{.name = names.components[largest_.place.component] + " in run " +
                         std::to_string(largest_.place.run),
                 .estimate = largest_.deviations};
