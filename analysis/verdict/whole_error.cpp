@@ -293,15 +293,15 @@ void WholeError::add_correlation_tests(const ErrorNames& names,
 /// there is not taken for a heavy tail.
 void WholeError::add_largest_test(const ErrorNames& names, std::vector<MemberTest>& all) const {
   if (largest_.samples == 0) return;
+  expect(largest_.place.component < std::min(component_.size(), names.components.size()) &&
+             largest_.place.scan < std::min(ends_.back(), names.times.size()),
+         "a largest error of a component and a scan");
   const OverDrive& squares = component_[largest_.place.component];
   std::size_t stretch = 0;
   while (ends_[stretch] <= largest_.place.scan) ++stretch;
   const SummaryOf& near = squares.stretch.empty() ? squares.whole : squares.stretch[stretch];
   const double ratio = std::max(1.0, near.result().mean);
   const double tail = normal_cdf(-largest_.deviations / std::sqrt(ratio));
-  expect(largest_.place.component < names.components.size() &&
-             largest_.place.scan < names.times.size(),
-         "a largest error of a component and a scan");
   Member member{.name = names.components[largest_.place.component] + " in run " +
                         std::to_string(largest_.place.run),
                 .estimate = largest_.deviations};
