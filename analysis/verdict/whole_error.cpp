@@ -316,6 +316,9 @@ std::vector<FamilyTest> WholeError::families(double level, const ErrorNames& nam
     std::ranges::move(along_.tests(names.components), std::back_inserter(all));
     return judge_tests(std::move(all), level);
   }
+  expect(dimension_ <= std::min(names.components.size(), bias_.size()) &&
+             (dimension_ == 1 || dimension_ <= component_.size()),
+         "sums of each component");
   all.push_back(nees_.size_test());
   add_stretch_tests(names, all);
   const auto squares = [](Member member, const Summary& runs, std::size_t) {
