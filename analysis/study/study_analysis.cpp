@@ -99,6 +99,11 @@ struct CellTask {
   /// many runs.
   void put(CellSums sums) {
     sums.put(cell);
+    for (const NeesResult& nees : cell.nees) {
+      expect(std::ranges::count(kErrorBlocks, nees.block) == 1 &&
+                 std::ranges::count(kMoments, nees.moments) == 1,
+             "a NEES of no known error");
+    }
     cell.verdict.runs = cell.complete + cell.failures.size();
     cell.verdict.failed = cell.failures.size();
   }
@@ -208,8 +213,28 @@ std::string StudyAnalysis::scans_text() const {
   return own_drives > 0 ? "up to " + scans : scans + " each";
 }
 
-StudyAnalysis analyze(const ResultFile& file, double level, const Parallel& parallel,
-                      std::optional<double> within) {
+namespace {
+
+/// Calls `work`, which may use the sums of a file. Numbers of sums that contradict each other are
+/// found where they are used, and would look like a mistake of ours.
+template <class Work>
+auto with_sums_of(const ResultFile& file, const Work& work) {
+  try {
+    return work();
+  } catch (const StudyError&) {
+    throw;
+  } catch (const RunError&) {
+    throw;
+  } catch (const std::exception&) {
+    if (!file.has_sums()) throw;
+    throw StudyError(file.path().string() +
+                     ": its sums contradict each other (damage, or another program wrote them): "
+                     "take a copy that is whole, or run the study again");
+  }
+}
+
+StudyAnalysis analysis_of(const ResultFile& file, double level, const Parallel& parallel,
+                          std::optional<double> within) {
   nees_bounds(1, 1, level);  // throws if the level is wrong, before the work begins
   StudyAnalysis study = begin(file, level, within);
   expect_scans(file);
@@ -235,6 +260,13 @@ StudyAnalysis analyze(const ResultFile& file, double level, const Parallel& para
   return study;
 }
 
+}  // namespace
+
+StudyAnalysis analyze(const ResultFile& file, double level, const Parallel& parallel,
+                      std::optional<double> within) {
+  return with_sums_of(file, [&] { return analysis_of(file, level, parallel, within); });
+}
+
 CellAnalysis analyze_cell(const ResultFile& file, const StoredCell& cell, double level,
                           std::size_t runs, const Parallel& parallel,
                           std::optional<double> within) {
@@ -242,9 +274,11 @@ CellAnalysis analyze_cell(const ResultFile& file, const StoredCell& cell, double
   expect_usable_sums(file, level);
   const RunCriteria criteria =
       criteria_of(file, level, within.value_or(study_facts_of(file).within));
-  CellTask task(file, cell, runs);
-  task.put(std::move(sums_of_tasks(file, std::span(&task, 1), criteria, parallel).front()));
-  return std::move(task.cell);
+  return with_sums_of(file, [&] {
+    CellTask task(file, cell, runs);
+    task.put(std::move(sums_of_tasks(file, std::span(&task, 1), criteria, parallel).front()));
+    return std::move(task.cell);
+  });
 }
 
 }  // namespace montecarta::analysis

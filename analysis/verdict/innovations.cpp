@@ -128,7 +128,9 @@ void InnovationSums::merge(InnovationSums& next) {
 
 Innovations InnovationSums::result(std::span<const double> times, double level,
                                    double within) const {
-  expect(largest_.has_value(), "an innovation");
+  expect(largest_.has_value() && largest_->scan < largest_->dof.size() &&
+             largest_->nis.size() == largest_->dof.size(),
+         "an innovation of a scan");
   Totals all = others_, without = others_;
   all.add(largest_->nis, largest_->dof);
   std::vector<std::uint32_t> dof = largest_->dof;

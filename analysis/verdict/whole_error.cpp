@@ -293,6 +293,9 @@ void WholeError::add_correlation_tests(const ErrorNames& names,
 /// there is not taken for a heavy tail.
 void WholeError::add_largest_test(const ErrorNames& names, std::vector<MemberTest>& all) const {
   if (largest_.samples == 0) return;
+  expect(largest_.place.component < std::min(component_.size(), names.components.size()) &&
+             largest_.place.scan < std::min(ends_.back(), names.times.size()),
+         "a largest error of a component and a scan");
   const OverDrive& squares = component_[largest_.place.component];
   std::size_t stretch = 0;
   while (ends_[stretch] <= largest_.place.scan) ++stretch;
@@ -313,6 +316,9 @@ std::vector<FamilyTest> WholeError::families(double level, const ErrorNames& nam
     std::ranges::move(along_.tests(names.components), std::back_inserter(all));
     return judge_tests(std::move(all), level);
   }
+  expect(dimension_ <= std::min(names.components.size(), bias_.size()) &&
+             (dimension_ == 1 || dimension_ <= component_.size()),
+         "sums of each component");
   all.push_back(nees_.size_test());
   add_stretch_tests(names, all);
   const auto squares = [](Member member, const Summary& runs, std::size_t) {

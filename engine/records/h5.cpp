@@ -32,7 +32,6 @@ void disable_error_printing() {
 Handle file_access() {
   Handle access(H5Pcreate(H5P_FILE_ACCESS));
   H5Pset_fclose_degree(access.id(), H5F_CLOSE_STRONG);
-  H5Pset_libver_bounds(access.id(), H5F_LIBVER_V18, H5F_LIBVER_V18);
   H5Pset_alignment(access.id(), kLarge, kPage);
   H5Pset_file_locking(access.id(), false, true);
   return access;
@@ -168,7 +167,9 @@ std::string library_version() {
 
 Handle create_file(const std::filesystem::path& path) {
   disable_error_printing();
-  Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, file_creation().id(), file_access().id()));
+  const Handle access = file_access();
+  H5Pset_libver_bounds(access.id(), H5F_LIBVER_V18, H5F_LIBVER_V18);
+  Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, file_creation().id(), access.id()));
   if (file.id() < 0)
     throw RunError(path.string() +
                    ": cannot create it (HDF5 refused; the disk may be full): check the disk");
@@ -370,6 +371,42 @@ std::vector<Text> texts(const Handle& object) {
   return found;
 }
 
+namespace {
+
+/// Numbers of an attribute as they are stored.
+std::string stored_bytes_of(const Handle& attribute, const Handle& type, std::size_t count) {
+  const std::size_t width = H5Tget_size(type.id());
+  require_in_file(std::array{static_cast<hsize_t>(count)}, width, attribute, "");
+  std::string bytes(count * width, '\0');
+  check(H5Aread(attribute.id(), type.id(), bytes.data()), "read attribute", attribute, "");
+  return bytes;
+}
+
+}  // namespace
+
+std::string attributes_text(const Handle& object) {
+  std::string all;
+  const auto add = [&](const std::string& part) {
+    all += std::to_string(part.size()) + ":" + part;
+  };
+  for (const std::string& name : attribute_names(object)) {
+    const Handle attribute = open_attribute(object, name);
+    const Handle type(H5Aget_type(attribute.id()));
+    const H5T_class_t kind = H5Tget_class(type.id());
+    if (kind != H5T_STRING && kind != H5T_INTEGER && kind != H5T_FLOAT) continue;
+    const Handle space(H5Aget_space(attribute.id()));
+    const auto count = static_cast<std::size_t>(
+        check(H5Sget_simple_extent_npoints(space.id()), "read attribute", object, name));
+    add(name);
+    add(std::to_string(kind) + " " + std::to_string(count));
+    if (kind != H5T_STRING) add(stored_bytes_of(attribute, type, count));
+    if (kind == H5T_STRING) {
+      for (const std::string& value : find_texts(object, name)) add(value);
+    }
+  }
+  return all;
+}
+
 std::vector<std::uint64_t> numbers(const Handle& object, const std::string& name) {
   const Handle attribute = open_attribute(object, name);
   const Handle space(H5Aget_space(attribute.id()));
@@ -485,6 +522,14 @@ std::optional<Element> element(const Handle& dataset) {
     if (H5Tequal(type.id(), native_type(candidate)) > 0) return candidate;
   }
   return std::nullopt;
+}
+
+std::string type_name(const Handle& dataset) {
+  constexpr std::array<const char*, 5> names = {"f64", "u8", "u16", "u32", "u64"};
+  if (const auto known = element(dataset)) return names[static_cast<std::size_t>(*known)];
+  const Handle type(H5Dget_type(dataset.id()));
+  const bool is_text = H5Tget_class(type.id()) == H5T_STRING;
+  return (is_text ? "text of " : "other type of ") + std::to_string(H5Tget_size(type.id()));
 }
 
 void read(const Handle& dataset, Element element, std::span<std::byte> bytes) {

@@ -70,6 +70,9 @@ bool has_attribute(const Handle& object, const std::string& name);
 std::vector<std::string> find_texts(const Handle& object, const std::string& name);
 /// All text attributes, in the order in which they were made.
 std::vector<Text> texts(const Handle& object);
+/// A text that tells apart all texts and numbers in attributes, and their order. Attributes of
+/// other types are left out: HDF5 keeps its dimension scales in them.
+std::string attributes_text(const Handle& object);
 std::vector<std::uint64_t> numbers(const Handle& object, const std::string& name);
 /// The first number of the attribute.
 std::uint64_t number(const Handle& object, const std::string& name);
@@ -94,6 +97,8 @@ std::uint64_t stored_bytes(const Handle& dataset);
 Shape shape(const Handle& dataset);
 /// Stored type of the elements; nullopt if it is not one of Element.
 std::optional<Element> element(const Handle& dataset);
+/// Name of the stored type, such as "f64", or "text of 20".
+std::string type_name(const Handle& dataset);
 /// Reads all elements, converted to `element`. Throws StudyError unless they fill `bytes` exactly.
 void read(const Handle& dataset, Element element, std::span<std::byte> bytes);
 /// Reads index `i` of the first axis, converted to `element`. Throws like read().

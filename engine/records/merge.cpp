@@ -2,8 +2,8 @@
 #include "engine/records/merge.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/records/check_file.hpp"
 #include "engine/records/open_result.hpp"
-#include "engine/records/read_description.hpp"
 #include "engine/records/sum_groups.hpp"
 
 #include <algorithm>

@@ -5,7 +5,6 @@
 #include "engine/records/check_description.hpp"
 #include "engine/records/result_format.hpp"
 #include "engine/records/result_schema.hpp"
-#include "engine/records/seal.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -13,21 +12,6 @@
 
 namespace montecarta::engine {
 namespace {
-
-void require_result_file(const h5::Handle& file, const std::filesystem::path& path) {
-  if (h5::find_text(file, "filetype") != std::string(format::kFiletype)) {
-    throw StudyError(
-        path.string() + ": not a montecarta result (its attribute 'filetype' is not '" +
-        std::string(format::kFiletype) + "'): give a file that 'montecarta run' wrote");
-  }
-  const auto version = h5::numbers(file, "format_version");
-  if (version.size() != 2 || version[0] != format::kMajor) {
-    throw StudyError(path.string() + ": format version " +
-                     (version.empty() ? "?" : std::to_string(version[0])) +
-                     " (this program reads version " + std::to_string(format::kMajor) +
-                     "): use the montecarta that wrote it");
-  }
-}
 
 /// The axes behind `run_axis` in a text such as "run, time, component"; nullopt if the text is
 /// different.
@@ -107,8 +91,24 @@ std::optional<SummedRuns> read_summed_runs(const h5::Handle& file,
 
 }  // namespace
 
+std::uint64_t minor_version_of(const h5::Handle& file, const std::filesystem::path& path) {
+  if (h5::find_text(file, "filetype") != std::string(format::kFiletype)) {
+    throw StudyError(
+        path.string() + ": not a montecarta result (its attribute 'filetype' is not '" +
+        std::string(format::kFiletype) + "'): give a file that 'montecarta run' wrote");
+  }
+  const auto version = h5::numbers(file, "format_version");
+  if (version.size() != 2 || version[0] != format::kMajor) {
+    throw StudyError(path.string() + ": format version " +
+                     (version.empty() ? "?" : std::to_string(version[0])) +
+                     " (this program reads version " + std::to_string(format::kMajor) +
+                     "): use the montecarta that wrote it");
+  }
+  return version[1];
+}
+
 ResultDescription read_description(const h5::Handle& file, const std::filesystem::path& path) {
-  require_result_file(file, path);
+  minor_version_of(file, path);
   ResultDescription result;
   read_schema(file, result);
   result.has_truth = h5::has(file, "truth");
@@ -119,11 +119,6 @@ ResultDescription read_description(const h5::Handle& file, const std::filesystem
   result.sums = read_summed_runs(file, result.cells);
   check_description(result, path);
   return result;
-}
-
-ResultDescription read_description(const std::filesystem::path& path) {
-  check_seal(path);
-  return read_description(h5::open_file(path), path);
 }
 
 }  // namespace montecarta::engine

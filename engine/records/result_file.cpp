@@ -2,9 +2,9 @@
 #include "engine/records/result_file.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/records/check_file.hpp"
 #include "engine/records/read_description.hpp"
 #include "engine/records/result_format.hpp"
-#include "engine/records/seal.hpp"
 #include "engine/records/sum_groups.hpp"
 #include "engine/text/visible_text.hpp"
 
@@ -54,7 +54,7 @@ bool read_elements(const PosixFile& file, std::uint64_t offset, Element element,
 
 ResultFile::ResultFile(const std::filesystem::path& path)
     : path_(existing(path)),
-      has_seal_(check_seal(path_) == Seal::holds),
+      has_seal_(check_file(path_) == Seal::holds),
       file_(h5::open_file(path_)),
       bytes_(path_, PosixFile::Mode::read),
       description_(read_description(file_, path_)) {

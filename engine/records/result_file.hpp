@@ -57,8 +57,8 @@ class ResultFile {
   /// {run of the file} status of each run.
   std::vector<RunStatus> status(const StoredCell& cell) const;
   /// Throws StudyError if the bytes of run index `i` of `cell`, including its status and true path,
-  /// do not match the stored fingerprints. A file without a seal is not checked, because another
-  /// program may have rewritten it.
+  /// do not match the stored fingerprints. The runs of a file without a seal were compared with
+  /// them when it was opened.
   void expect_whole(const StoredCell& cell, std::size_t i) const;
   std::vector<std::string> failure_reasons(const StoredCell& cell) const;
   std::vector<std::uint32_t> failure_steps(const StoredCell& cell) const;

@@ -16,6 +16,9 @@ inline constexpr std::size_t kSessionsBytes = 4096;  ///< size of the log of res
 inline constexpr const char* kSums = "sums";         ///< group of the sums over groups of runs
 /// Dataset in the timing of a cell with the processor time of every run in sums.
 inline constexpr const char* kSumSeconds = "sums_cpu_seconds";
+inline constexpr const char* kStructure = "structure";  ///< dataset in /provenance
+inline constexpr std::uint64_t kMinorOfStructure = 11;  ///< version from which every file has it
+inline constexpr std::uint64_t kMinorOfSeal = 5;        ///< the same of the seal
 inline constexpr const char* kFull = "full";  ///< group of a cell for the columns of full runs only
 inline constexpr const char* kFullRun = "full_run";  ///< first axis of those columns
 /// Attribute: number of full runs in the study.

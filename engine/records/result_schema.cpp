@@ -3,6 +3,7 @@
 
 #include "engine/records/result_format.hpp"
 #include "engine/records/run_record.hpp"
+#include "engine/records/structure.hpp"
 
 #include <algorithm>
 #include <array>
@@ -508,6 +509,7 @@ void lay_out(const std::filesystem::path& path, const ResultDescription& result)
       h5::open_group(file, "provenance"), "sittings", "", format::kSessionsBytes,
       {"1", "one line for each resumption of the work: what was different from its beginning"});
   scales.clear();
+  put_structure(file);
   h5::close_file(std::move(file));
 }
 

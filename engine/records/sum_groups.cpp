@@ -2,8 +2,8 @@
 #include "engine/records/sum_groups.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/records/check_file.hpp"
 #include "engine/records/open_result.hpp"
-#include "engine/records/read_description.hpp"
 #include "engine/records/result_format.hpp"
 #include "engine/records/seal.hpp"
 

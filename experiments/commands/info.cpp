@@ -5,6 +5,7 @@
 #include "engine/text/wrapped_text.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/stored_result.hpp"
+#include "experiments/commands/summed_study.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -49,7 +50,7 @@ void print_study(const ResultFile& file) {
                     {"seal", check_seal(file.path()) == Seal::holds
                                  ? "holds"
                                  : "none: an older montecarta or another program wrote the file, "
-                                   "and damage may go unnoticed"},
+                                   "which was checked when it was opened"},
                     {"study", file.study_name() + ", seed " + std::to_string(file.seed())},
                     {"SHA-256", file.study_sha256()}});
 }
@@ -123,7 +124,13 @@ void print_pairs(const char* heading, const TextPairs& pairs) {
 }  // namespace
 
 int info_command(const Arguments& arguments) {
-  const ResultFile file = open_stored(arguments.operands().front());
+  const std::string& name = arguments.operands().front();
+  const auto begun = begun_files(name);
+  if (!begun.empty()) {
+    std::cerr << "montecarta: " << name << " is unfinished; reading " << begun.front().string()
+              << ", the first of its " << begun.size() << " files ('status' counts all runs)\n";
+  }
+  const ResultFile file = begun.empty() ? open_stored(name) : ResultFile(begun.front());
   if (arguments.has("text")) {
     std::cout << file.study_text();
     return kDone;

@@ -5,6 +5,7 @@
 #include "engine/records/sum_groups.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/stored_result.hpp"
+#include "experiments/commands/summed_study.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>
@@ -53,6 +54,13 @@ void add(const ResultFile& file, StudyStatus& study) {
   }
 }
 
+/// Adds a result, or all files of the unfinished work on one that has sums.
+void add_result(const std::string& name, StudyStatus& study) {
+  const auto begun = begun_files(name);
+  for (const auto& path : begun) add(ResultFile(path), study);
+  if (begun.empty()) add(open_stored(name), study);
+}
+
 void print(const StudyStatus& study) {
   std::vector<TableRow> rows{{"cell", "complete", "failed", "missing", "all", "not needed"}};
   for (std::size_t c = 0; c < study.labels.size(); ++c) {
@@ -85,17 +93,45 @@ std::string defect_of(const ResultFile& file) {
   return {};
 }
 
-std::string line_of(const ResultFile& file, Depth depth) {
-  RunCounts all;
-  for (const StoredCell& cell : file.cells()) {
-    all += count_status(file, cell);
-  }
-  const std::string flaw = depth == Depth::every_byte ? defect_of(file) : "";
-  const char* state = !flaw.empty() ? "damaged" : all.missing > 0 ? "unfinished" : "complete";
-  return joined(std::vector<std::string>{state, file.study_sha256(), std::to_string(all.complete),
-                                         std::to_string(all.failed), std::to_string(all.missing),
-                                         to_text(file.wall_seconds()), flaw},
+/// The fields of a line about a result, without its name. The state follows from the others.
+struct StatusFields {
+  std::string sha256;
+  RunCounts runs;
+  double seconds = 0.0;
+  std::string flaw;  ///< what is damaged; empty if nothing is
+};
+
+std::string text_of(const StatusFields& fields) {
+  const char* state = !fields.flaw.empty()      ? "damaged"
+                      : fields.runs.missing > 0 ? "unfinished"
+                                                : "complete";
+  return joined(std::vector<std::string>{state, fields.sha256, std::to_string(fields.runs.complete),
+                                         std::to_string(fields.runs.failed),
+                                         std::to_string(fields.runs.missing),
+                                         to_text(fields.seconds), fields.flaw},
                 "\t");
+}
+
+std::string line_of(const ResultFile& file, Depth depth) {
+  StatusFields fields{file.study_sha256(), {}, file.wall_seconds(), {}};
+  for (const StoredCell& cell : file.cells()) fields.runs += count_status(file, cell);
+  if (depth == Depth::every_byte) fields.flaw = defect_of(file);
+  return text_of(fields);
+}
+
+/// The line of the unfinished work on a result that has sums.
+std::string line_of(const std::vector<std::filesystem::path>& begun, Depth depth) {
+  StatusFields fields;
+  StudyStatus study;
+  for (const auto& path : begun) {
+    const ResultFile file(path);
+    add(file, study);
+    fields.seconds += file.wall_seconds();
+    if (depth == Depth::every_byte && fields.flaw.empty()) fields.flaw = defect_of(file);
+  }
+  fields.sha256 = study.sha256;
+  for (const std::vector<RunStatus>& runs : study.runs) fields.runs += count_status(runs);
+  return text_of(fields);
 }
 
 /// A line about one file for scripts, with fields separated by tabs: name, state (complete,
@@ -104,7 +140,8 @@ std::string line_of(const ResultFile& file, Depth depth) {
 std::string status_line(const std::string& name, Depth depth) {
   std::string line;
   try {
-    line = line_of(ResultFile(name), depth);
+    const auto begun = begun_files(name);
+    line = begun.empty() ? line_of(ResultFile(name), depth) : line_of(begun, depth);
   } catch (const std::exception& error) {
     line = joined(std::vector<std::string>{"damaged", "", "0", "0", "0", "0", error.what()}, "\t");
   }
@@ -121,7 +158,7 @@ int status_command(const Arguments& arguments) {
     return kDone;
   }
   StudyStatus study;
-  for (const std::string& name : arguments.operands()) add(open_stored(name), study);
+  for (const std::string& name : arguments.operands()) add_result(name, study);
   print(study);
   return kDone;
 }

@@ -3,14 +3,17 @@
 
 #include "analysis/study/stored_sums.hpp"
 #include "engine/errors.hpp"
+#include "engine/records/check_file.hpp"
 #include "engine/records/posix_file.hpp"
-#include "engine/records/read_description.hpp"
 #include "engine/records/result_file.hpp"
 #include "experiments/commands/stored_result.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cstdio>
+#include <map>
 #include <memory>
+#include <string_view>
 
 namespace montecarta::experiments {
 namespace {
@@ -99,11 +102,16 @@ void show_progress(const StudyPlan& plan, std::uint64_t done, double seconds,
 fs::path replaces_in(const fs::path& folder) { return folder / "replaces"; }
 fs::path lock_in(const fs::path& folder) { return folder / "lock"; }
 
+/// Returns whether a file in the folder has that name because it holds runs or sums.
+bool is_stored_work(const std::string& name) {
+  return name.starts_with("group_") || name.starts_with("rows_");
+}
+
 /// Removes the runs and groups in the folder, and leaves other files.
 void remove_groups(const fs::path& folder) {
   for (const auto& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
-    if (name.starts_with("group_") || name.starts_with("rows_")) fs::remove(entry.path());
+    if (is_stored_work(name)) fs::remove(entry.path());
   }
 }
 
@@ -113,6 +121,14 @@ void remove_work(const fs::path& folder) {
   fs::remove(replaces_in(folder));
   fs::remove(lock_in(folder));
   if (fs::is_empty(folder)) fs::remove(folder);
+}
+
+/// Removes the folder of work that has stored nothing.
+void remove_empty_work(const fs::path& folder) {
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (is_stored_work(entry.path().filename().string())) return;
+  }
+  remove_work(folder);
 }
 
 /// Throws StudyError if a finished result is not that of this plan.
@@ -154,15 +170,31 @@ std::optional<PosixFile> open_work(const fs::path& folder, const StudyPlan& plan
 
 fs::path groups_of(fs::path output) { return output += ".groups"; }
 
-RunOutcome run_summed_study(const StudyPlan& plan, const RunOptions& options) {
-  const Stopwatch stopwatch;
-  const fs::path folder = groups_of(options.output);
-  RunOutcome outcome;
-  const std::optional<PosixFile> lock = open_work(folder, plan, options);
-  if (!lock) {
-    outcome.counts = counts_in(options.output);
-    return outcome;
+std::vector<fs::path> begun_files(const fs::path& output) {
+  const fs::path folder = groups_of(output);
+  std::error_code ignored;
+  std::map<std::pair<std::uint64_t, std::string>, fs::path> found;
+  if (is_there(output) || !fs::is_directory(folder, ignored)) return {};
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    const std::string name = entry.path().filename().string();
+    const std::size_t begin = is_stored_work(name) ? name.find('_') + 1 : name.size();
+    std::uint64_t run = 0;
+    const auto [end, error] = std::from_chars(name.data() + begin, name.data() + name.size(), run);
+    const std::string_view ending(end);
+    if (error == std::errc() && (ending == ".h5" || ending == ".h5.part"))
+      found.emplace(std::pair(run, name), entry.path());
   }
+  std::vector<fs::path> files;
+  for (const auto& [key, path] : found) files.push_back(path);
+  return files;
+}
+
+namespace {
+
+/// Runs all groups and makes the result of them.
+RunOutcome run_groups(const StudyPlan& plan, const RunOptions& options, const fs::path& folder) {
+  const Stopwatch stopwatch;
+  RunOutcome outcome;
   std::vector<fs::path> groups;
   for (std::uint64_t run = plan.first_run; run < plan.last_run; run += kRunsOfAGroup) {
     const StudyPlan group = group_of(plan, run);
@@ -186,6 +218,24 @@ RunOutcome run_summed_study(const StudyPlan& plan, const RunOptions& options) {
   remove_work(folder);
   outcome.counts = counts_in(options.output);
   return outcome;
+}
+
+}  // namespace
+
+RunOutcome run_summed_study(const StudyPlan& plan, const RunOptions& options) {
+  const fs::path folder = groups_of(options.output);
+  const std::optional<PosixFile> lock = open_work(folder, plan, options);
+  if (!lock) {
+    RunOutcome outcome;
+    outcome.counts = counts_in(options.output);
+    return outcome;
+  }
+  try {
+    return run_groups(plan, options, folder);
+  } catch (...) {
+    remove_empty_work(folder);
+    throw;
+  }
 }
 
 std::vector<NewGroup> computed_group(const StudyPlan& plan, std::uint64_t first_run,

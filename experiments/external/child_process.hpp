@@ -87,6 +87,8 @@ class ChildProcess {
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
+  /// Returns whether the program has answered anything yet.
+  bool has_answered() const { return answered_ > 0; }
   /// Sends `line`, which must not contain a line break, and returns the next line of the program's
   /// output, which is valid until the next exchange. Throws ProgramError if the program ends, its
   /// answer is late or too long, or the wait is stopped. After an error no further exchange is

@@ -102,7 +102,9 @@ void ExternalFilter::send_start(const RunStart& start) const {
 
 std::string_view ExternalFilter::ask(const std::string& message) const {
   if (session_->process == nullptr) throw ProgramError("program is gone");
-  return session_->process->exchange(message, {command_.answer_limit, stop_});
+  const bool is_started = session_->process->has_answered();
+  return session_->process->exchange(
+      message, {is_started ? command_.answer_limit : command_.start_limit(), stop_});
 }
 
 template <class Use>

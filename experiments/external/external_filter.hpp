@@ -20,6 +20,8 @@ namespace montecarta::experiments {
 struct ExternalCommand {
   std::vector<std::string> words;  ///< the program and its arguments
   double answer_limit = 30.0;      ///< [s] time limit of one answer
+  /// [s] time limit of the first answer of a process, whose interpreter starts before it
+  double start_limit() const { return 10.0 * answer_limit; }
   /// Whether one process serves all runs; otherwise each run has a new one.
   bool keeps_process = true;
 

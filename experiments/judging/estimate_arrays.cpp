@@ -44,9 +44,10 @@ std::vector<std::string> header_of(const std::vector<std::string>& columns, std:
   return header;
 }
 
-h5::Handle opened(const std::filesystem::path& path) {
-  h5::Handle file = h5::open_file(path);
-  if (h5::find_text(file, "filetype") != format::kFiletype) return file;
+/// Returns the file unless it is a result.
+const ArrayFile& not_a_result(const ArrayFile& file, const std::filesystem::path& path) {
+  const auto filetype = file.texts("filetype");
+  if (!filetype || filetype->empty() || filetype->front() != format::kFiletype) return file;
   throw StudyError(path.string() +
                    ": is a result already (judge reads arrays): use montecarta analyze");
 }
@@ -55,9 +56,9 @@ h5::Handle opened(const std::filesystem::path& path) {
 
 EstimateArrays::EstimateArrays(std::filesystem::path path, std::string cell)
     : path_(std::move(path)),
-      file_(opened(path_)),
+      file_(path_),
       cells_{std::move(cell)},
-      states_(open(h5::has(file_, "error") ? "error" : "mean", 3)),
+      states_(open(not_a_result(file_, path_).has("error") ? "error" : "mean", 3)),
       covariance_(open("covariance", 4)),
       truth_(find("truth", 3)),
       time_(find("time", 2)),
@@ -105,16 +106,15 @@ void EstimateArrays::refuse(const std::string& name, const std::string& reason) 
 /// Opens an array of `axes` axes, of which that of runs may be left out, or have length 1, if all
 /// runs share it. With `save -hdf5` Octave writes a group that has the array as `value`.
 EstimateArrays::Array EstimateArrays::open(const std::string& name, std::size_t axes) const {
-  if (!h5::has(file_, name)) {
+  if (!file_.has(name)) {
     refuse(name, "is missing (arrays are error, or mean and truth, with covariance; the file has " +
-                     joined(h5::members(file_)) +
+                     joined(file_.members()) +
                      "): write it, as experiments/JUDGING_ESTIMATES.md shows");
   }
-  const bool is_of_octave = h5::is_group(file_, name) && h5::has(file_, name + "/value");
+  const bool is_of_octave = file_.is_group(name) && file_.has(name + "/value");
   const std::string dataset = is_of_octave ? name + "/value" : name;
-  if (h5::is_group(file_, dataset)) refuse(name, "is a group (an array is needed): write an array");
-  Array array{h5::open_dataset(file_, dataset), {}, name};
-  array.shape = h5::shape(array.dataset);
+  if (file_.is_group(dataset)) refuse(name, "is a group (an array is needed): write an array");
+  Array array{name, dataset, file_.shape(dataset)};
   const bool may_be_shared = name == "truth" || name == "time";
   if (may_be_shared && array.shape.size() == axes && array.shape[0] == 1)
     array.shape.erase(array.shape.begin());
@@ -129,7 +129,7 @@ EstimateArrays::Array EstimateArrays::open(const std::string& name, std::size_t 
 
 std::optional<EstimateArrays::Array> EstimateArrays::find(const std::string& name,
                                                           std::size_t axes) const {
-  if (!h5::has(file_, name)) return std::nullopt;
+  if (!file_.has(name)) return std::nullopt;
   return open(name, axes);
 }
 
@@ -147,12 +147,12 @@ StateShape EstimateArrays::shape_of_names() const {
   const auto width = static_cast<std::size_t>(states_.shape[2]);
   const auto d = static_cast<std::size_t>(covariance_.shape[2]);
   std::vector<std::string> columns;
-  if (h5::has_attribute(file_, "names")) {
-    for (const std::string& text : h5::find_texts(file_, "names")) {
+  if (const auto names = file_.texts("names")) {
+    for (const std::string& text : *names) {
       for (const std::string& name : split(text, ',')) columns.push_back(name);
     }
     if (columns.empty()) refuse("names", "are no texts: write x_m,y_m or a list of texts");
-  } else if (h5::has(file_, "names")) {
+  } else if (file_.has("names")) {
     refuse("names", "is an array (an attribute is needed): write it as an attribute of the file");
   } else if (!has_errors()) {
     refuse("names",
@@ -184,16 +184,8 @@ StateShape EstimateArrays::shape_of_names() const {
 }
 
 std::vector<double> EstimateArrays::numbers(const Array& array, std::size_t run) const {
-  std::size_t count = 1;
-  for (std::size_t k = array.has_runs ? 1 : 0; k < array.shape.size(); ++k) count *= array.shape[k];
-  std::vector<double> values(count);
-  const auto bytes = std::as_writable_bytes(std::span(values));
-  if (array.has_runs) {
-    h5::read_row(array.dataset, run, Element::f64, bytes);
-  } else {
-    h5::read(array.dataset, Element::f64, bytes);
-  }
-  return values;
+  return file_.numbers(array.dataset,
+                       array.has_runs ? std::optional<std::size_t>(run) : std::nullopt);
 }
 
 /// The states of a run at the scans that have one, with their times and, as lines, their scans.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/records/h5.hpp"
+#include "experiments/judging/array_file.hpp"
 #include "experiments/judging/estimate_source.hpp"
 
 #include <cstddef>
@@ -37,9 +37,9 @@ class EstimateArrays final : public EstimateSource {
  private:
   /// A dataset of numbers with its axes.
   struct Array {
-    h5::Handle dataset;
-    h5::Shape shape;
     std::string name;
+    std::string dataset;  ///< its path in the file
+    h5::Shape shape;
     bool has_runs = true;  ///< whether the first axis is that of runs
   };
 
@@ -55,7 +55,7 @@ class EstimateArrays final : public EstimateSource {
   StateRows states_of(const Array& array, std::size_t run, const std::string& place) const;
 
   std::filesystem::path path_;
-  h5::Handle file_;
+  ArrayFile file_;
   std::vector<std::string> cells_;
   std::vector<std::uint64_t> runs_;
   Array states_;  ///< `error` or `mean`

@@ -4,7 +4,7 @@
 #include "analysis/render/tables/terminal.hpp"
 #include "analysis/study/study_analysis.hpp"
 #include "engine/errors.hpp"
-#include "engine/records/read_description.hpp"
+#include "engine/records/check_file.hpp"
 #include "engine/records/result_layout.hpp"
 #include "engine/records/shard.hpp"
 #include "tests/analysis/synthetic_result.hpp"
@@ -30,7 +30,7 @@ class ResultFuzz : public testing::Test {
 
   /// Everything that is left open by the seal.
   std::vector<ByteRange> open_ranges() const {
-    const ResultDescription description = read_description(h5::open_file(path_), path_);
+    const ResultDescription description = read_description(path_);
     return written_later(find_slabs(path_, description));
   }
   /// Returns whether a file of these bytes is refused. Tables take longer than all else.

@@ -3,8 +3,8 @@
 #include "engine/records/check_description.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/records/check_file.hpp"
 #include "engine/records/merge.hpp"
-#include "engine/records/read_description.hpp"
 #include "engine/records/result_file.hpp"
 #include "engine/records/result_layout.hpp"
 #include "engine/records/result_schema.hpp"
@@ -174,7 +174,7 @@ class SealOfResult : public ResultWriting {
   }
   /// Ranges that are left open in the result at `path`.
   std::vector<ByteRange> open_ranges(const std::filesystem::path& path) const {
-    const ResultDescription description = read_description(h5::open_file(path), path);
+    const ResultDescription description = read_description(path);
     return written_later(find_slabs(path, description));
   }
   std::string refusal(const std::filesystem::path& path) const {

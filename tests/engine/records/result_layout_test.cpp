@@ -24,13 +24,6 @@
 namespace montecarta::engine {
 namespace {
 
-std::string type_name(const h5::Handle& dataset) {
-  const auto element = h5::element(dataset);
-  if (!element) return "text";
-  constexpr const char* names[] = {"f64", "u8", "u16", "u32", "u64"};
-  return names[static_cast<std::size_t>(*element)];
-}
-
 bool is_scale(const h5::Handle& dataset) {
   return h5::find_text(dataset, "CLASS") == "DIMENSION_SCALE";
 }
@@ -50,7 +43,7 @@ void list(const h5::Handle& group, const std::string& path, std::ostream& out) {
       continue;
     }
     const h5::Handle dataset = h5::open_dataset(group, name);
-    out << path << "/" << name << " " << type_name(dataset);
+    out << path << "/" << name << " " << (h5::element(dataset) ? h5::type_name(dataset) : "text");
     for (auto length : h5::shape(dataset)) out << " x " << length;
     out << (is_scale(dataset) ? " (scale)\n" : "\n");
     list_attributes(dataset, "", out);

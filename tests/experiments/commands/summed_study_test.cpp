@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Studies that store sums over groups of runs in place of the runs.
 #include "analysis/study/stored_sums.hpp"
+#include "analysis/study/study_analysis.hpp"
 #include "engine/records/result_file.hpp"
 #include "engine/records/sum_groups.hpp"
+#include "tests/doubles/complaint.hpp"
 #include "tests/experiments/commands/program.hpp"
 
 #include <gtest/gtest.h>
@@ -122,6 +124,9 @@ TEST_F(SlowSummedStudy, IsResumedAfterItWasStoppedOrKilled) {
   ASSERT_EQ(run("whole.h5").code, 0);
   EXPECT_EQ(run("out.h5", {"--time-budget", "0.01"}).code, 85);
   EXPECT_TRUE(exists("out.h5.groups"));
+  EXPECT_EQ(call({"status", "out.h5"}).code, 0);
+  EXPECT_THAT(call({"status", "--each", "out.h5"}).out, StartsWith("out.h5\tunfinished\t"));
+  EXPECT_EQ(call({"info", "out.h5"}).code, 0);
   expect_refused({"run", "blink.ini", "-o", "out.h5"}, "--resume");
   const std::vector<std::string> on = {"run", "blink.ini", "-o", "out.h5", "--quiet", "--resume"};
   for (const char* seconds : {"0.1", "0.2", "0.4"}) {
@@ -181,6 +186,37 @@ TEST_F(SlowSummedStudy, IsRefusedIfAnotherVersionWroteItsSums) {
   for (NewGroup& group : groups) ++group.head.layout;
   write_group(folder_ / "other.h5", folder_ / "rows.h5", groups);
   expect_refused({"analyze", "other.h5"}, "another layout");
+}
+
+TEST_F(SlowSummedStudy, LeavesNoFolderIfTheDiskIsTooSmall) {
+  const Called called =
+      run("out.h5", {"--set", "scenario.control_rate=1e5", "--set", "scenario.scan_rate=1e5",
+                     "--set", "record.rate=step", "--set", "record.columns=sums, map, particles"});
+  EXPECT_EQ(called.code, 1);
+  EXPECT_THAT(called.err, testing::HasSubstr("are needed"));
+  EXPECT_FALSE(exists("out.h5.groups"));
+}
+
+/// The seal of such a file holds.
+TEST_F(SlowSummedStudy, NamesTheFileWhereSumsContradictEachOther) {
+  ASSERT_EQ(run("rows.h5", {"--runs", "0:16", "--set", "record.columns=pose,covariance", "--set",
+                            "study.runs=16"})
+                .code,
+            0);
+  const auto whole = sums_to_store(ResultFile(folder_ / "rows.h5"), Parallel::serial());
+  std::size_t refused = 0;
+  for (std::size_t k = 0; k < whole.front().sums.size(); ++k) {
+    if (whole.front().sums[k] != 16) continue;
+    std::vector<NewGroup> groups = whole;
+    groups.front().sums[k] = ~std::uint64_t{0};
+    write_group(folder_ / "sums.h5", folder_ / "rows.h5", groups);
+    const ResultFile file(folder_ / "sums.h5");
+    const std::string complaint = complaint_of([&] { analysis::analyze(file); });
+    if (complaint == "nothing") continue;
+    EXPECT_THAT(complaint, testing::HasSubstr("sums.h5")) << k;
+    ++refused;
+  }
+  EXPECT_GT(refused, 5U);
 }
 
 TEST_F(SlowSummedStudy, RefusesWhatNeedsRows) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // verify and replay, which compute stored runs again.
+#include "engine/records/check_file.hpp"
 #include "engine/records/h5.hpp"
-#include "engine/records/read_description.hpp"
 #include "engine/records/result_file.hpp"
 #include "engine/records/result_layout.hpp"
 #include "experiments/text/words.hpp"
@@ -23,7 +23,7 @@ class Verify : public BlinkProgram {
   /// Turns one byte of run index `run` of a cell's column into another.
   void alter(const std::string& label, const std::string& column, std::size_t run) const {
     const std::filesystem::path path = folder_ / "out.h5";
-    const ResultDescription file = read_description(h5::open_file(path), path);
+    const ResultDescription file = read_description(path);
     const auto cell = std::ranges::find(file.cells, label, &StoredCell::label);
     const auto found = std::ranges::find(cell->columns, column, &Column::name);
     const ResultSlabs slabs = find_slabs(path, file);
@@ -43,7 +43,7 @@ TEST_F(Verify, RunsWithLandmarksOfTheirOwn) {
   run({"--set", "scenario.map=random", "--set", "scenario.map_shift=1"});
   EXPECT_THAT(call({"verify", "out.h5", "--sample", "100"}).out, StartsWith("9 of 9 runs"));
   const std::filesystem::path path = folder_ / "out.h5";
-  const ResultSlabs slabs = find_slabs(path, read_description(h5::open_file(path), path));
+  const ResultSlabs slabs = find_slabs(path, read_description(path));
   engine::flip_bit(path, slabs.truth->landmarks->at(1));
   const Called called = call({"verify", "out.h5", "--sample", "100"});
   EXPECT_EQ(called.code, 4);

@@ -3,12 +3,14 @@
 #include "experiments/judging/estimate_arrays.hpp"
 
 #include "engine/records/h5.hpp"
+#include "engine/records/posix_file.hpp"
 #include "tests/doubles/complaint.hpp"
 #include "tests/doubles/matchers.hpp"
 #include "tests/doubles/scratch_folder.hpp"
 
 #include <cmath>
 #include <limits>
+#include <span>
 
 namespace montecarta::experiments {
 namespace {
@@ -126,6 +128,20 @@ TEST_F(EstimateArraysTest, ThatDoNotFitAreNamed) {
   EXPECT_THAT(complaint(), HasSubstr("names has 2 columns (error has 1)"));
   Arrays(path_).with("error", {0, 2, 1}, {}).with("covariance", {0, 2, 1, 1}, {});
   EXPECT_THAT(complaint(), HasSubstr("error is empty"));
+}
+
+/// HDF5 1.10 copies as many bytes of a text as the file says, or searches for its place for ever.
+TEST_F(EstimateArraysTest, OfWhichATextIsDamagedEndNoProgram) {
+  Arrays(path_).with("error", {1, 2, 1}, {1}).with("covariance", {1, 2, 1, 1}, {1}).called("a");
+  const PosixFile file(path_, PosixFile::Mode::write);
+  std::string bytes(file.size(), '\0');
+  file.read_at(0, std::as_writable_bytes(std::span(bytes)));
+  const std::size_t heap = bytes.find("GCOL");
+  ASSERT_NE(heap, std::string::npos);
+  const std::uint64_t long_text = 1U << 30U;
+  constexpr std::size_t kSizeOfFirstText = 24;
+  file.write_at(heap + kSizeOfFirstText, std::as_bytes(std::span(&long_text, 1)));
+  EXPECT_THAT(complaint(), HasSubstr("study.h5"));
 }
 
 }  // namespace
