@@ -11,7 +11,7 @@ namespace montecarta::engine::format {
 
 inline constexpr std::string_view kFiletype = "montecarta-results";
 inline constexpr std::uint64_t kMajor = 1;           ///< increased when a meaning changes
-inline constexpr std::uint64_t kMinor = 10;          ///< increased when something is added
+inline constexpr std::uint64_t kMinor = 11;          ///< increased when something is added
 inline constexpr std::size_t kSessionsBytes = 4096;  ///< size of the log of resumptions
 inline constexpr const char* kSums = "sums";         ///< group of the sums over groups of runs
 /// Dataset in the timing of a cell with the processor time of every run in sums.

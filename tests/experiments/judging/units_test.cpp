@@ -71,7 +71,7 @@ TEST(AngleUnits, OfHeadingsThatCountTurnsAreRadians) {
   for (const auto& heading :
        {std::function<double(int)>(turns), std::function<double(int)>(jumps_once)}) {
     EXPECT_EQ(on_angles(driven(heading, unwrapped)), "nothing");
-    EXPECT_EQ(on_angles(driven(heading, wrap)), "nothing");
+    EXPECT_EQ(on_angles(driven(heading, [](double angle) { return wrap(angle); })), "nothing");
     EXPECT_EQ(note_on_angles(driven(heading, unwrapped), "a.csv"), "");
   }
 }
