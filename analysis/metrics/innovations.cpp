@@ -30,7 +30,9 @@ class InnovationsOverRuns final : public MergedSums<InnovationsOverRuns> {
   explicit InnovationsOverRuns(const RunCriteria& criteria)
       : criteria_(&criteria),
         has_common_scans_(criteria.drives.empty()),
-        innovations_(criteria.times.size()) {}
+        innovations_(criteria.times.size(), criteria.has_same_measurements
+                                                ? InnovationSums::Measurements::same
+                                                : InnovationSums::Measurements::own) {}
   void add(const MeasuredRun& run) override {
     if (run.rows.nis.empty()) return;
     innovations_.add(run.rows.run, run.times, run.rows.nis, run.rows.nis_dof);

@@ -84,6 +84,7 @@ void InnovationSums::Totals::add_products(std::span<const double> nis,
 
 void InnovationSums::add(std::uint64_t run, std::span<const double> times,
                          std::span<const double> nis, std::span<const std::uint32_t> dof) {
+  if (largest_ && measurements_ == Measurements::same) return;
   std::optional<LargestRun> next;
   for (std::size_t s = 0; s < nis.size(); ++s) {
     if (!is_innovation(nis[s], dof[s])) continue;
@@ -100,6 +101,7 @@ void InnovationSums::add(std::uint64_t run, std::span<const double> times,
 }
 
 void InnovationSums::merge(InnovationSums& next) {
+  if (largest_ && measurements_ == Measurements::same) return;
   merge_into(others_, next.others_);
   if (!next.largest_) return;
   if (!largest_) return largest_.swap(next.largest_);

@@ -95,7 +95,11 @@ struct LargestRun {
 /// Adds up the NIS over runs.
 class InnovationSums {
  public:
-  explicit InnovationSums(std::size_t scans) : others_(scans) {}
+  /// Runs with measurements of their own are independent. Runs on one recorded drive have the same
+  /// measurements, so that only the first one counts.
+  enum class Measurements { own, same };
+  explicit InnovationSums(std::size_t scans, Measurements measurements = Measurements::own)
+      : measurements_(measurements), others_(scans) {}
 
   /// Adds the innovations of run number `run`: `times` [s], `nis` and `dof`, all {scan}.
   void add(std::uint64_t run, std::span<const double> times, std::span<const double> nis,
@@ -145,6 +149,7 @@ class InnovationSums {
   };
   void merge(InnovationSums& next);
 
+  Measurements measurements_;
   Totals others_;  ///< sums over all runs except that of `largest_`
   /// Run that is counted with its largest innovation and without it.
   std::optional<LargestRun> largest_;
