@@ -172,6 +172,15 @@ TEST_F(DriveOfTenMinutes, AFewGrossOutliersAreCountedAndTheRatioIsSaidWithoutThe
   EXPECT_EQ(found.mean.fixes, 600U) << "the verdict uses all of them";
 }
 
+TEST(DriveVerdict, PrintsTheTimeThatItNeedsLikeEveryDuration) {
+  DriveConsistency drive;
+  drive.answer = Answer::undecided;
+  drive.minutes = 5.24e4;
+  EXPECT_EQ(in_words(drive), "this drive cannot tell: it would need at least 36.4 d");
+  drive.mean.blocks[0].effective_samples = 10.0;
+  EXPECT_EQ(in_words(drive), "this drive cannot tell: it would need 36.4 d");
+}
+
 // Runs that each met a drive of its own.
 
 /// A drive of `fixes` with one error; its square is `ratio` times the covariance.

@@ -5,6 +5,7 @@
 #include "analysis/study/study_analysis.hpp"
 #include "analysis/verdict/drive_verdict.hpp"
 #include "analysis/verdict/innovations.hpp"
+#include "filters/factory.hpp"
 #include "tests/doubles/matchers.hpp"
 #include "tests/doubles/same_results.hpp"
 #include "tests/experiments/commands/program.hpp"
@@ -179,6 +180,28 @@ TEST_F(Yard, RunsThatCannotDifferAreStoredForEachAndCountOnce) {
   EXPECT_EQ(engine::difference(ResultFile(folder_ / "out.h5"), ResultFile(folder_ / "once.h5")),
             "");
   EXPECT_EQ(call({"verify", "out.h5", "--sample", "40", "--data", "yard"}).code, 0);
+}
+
+// Recomputed one by one, the runs are those that were stored without being computed.
+TEST_F(Yard, EveryFilterWithoutParticlesGivesTheSameInEveryRun) {
+  std::string cells;
+  std::size_t filters = 0;
+  for (const FilterKind& kind : filters::filter_kinds()) {
+    if (kind.reports.particles || kind.name == "external") continue;
+    cells += "cell = " + kind.name + "\n";
+    ++filters;
+  }
+  ASSERT_GT(filters, 8U);
+  study(cells);
+  write("yard/detections.csv", scans_each(0.5, 5.0));
+  analysed({"--set", "study.runs=2", "--threads", "1"});
+  const ResultFile file(folder_ / "out.h5");
+  for (const StoredCell& cell : file.cells()) {
+    EXPECT_THAT(file.status(cell), testing::Each(RunStatus::complete)) << cell.label;
+    EXPECT_EQ(file.fingerprints(cell)[0], file.fingerprints(cell)[1]) << cell.label;
+  }
+  EXPECT_THAT(call({"verify", "out.h5", "--sample", "100", "--data", "yard"}).out,
+              HasSubstr("runs are reproduced byte for byte"));
 }
 
 TEST_F(Yard, AsRobotsLogItIsRefusedWithTheScriptThatRepairsIt) {
