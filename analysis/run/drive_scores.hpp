@@ -62,12 +62,13 @@ struct DriveScores {
   /// reference was an input of the filter.
   bool is_below_reference = false;
 
+  /// Without the numbers of outliers: files of sums hold no recorded drives, and those of older
+  /// builds stay readable.
   static constexpr auto members() {
     using Scores = DriveScores;
     return std::tuple(&Scores::blocks, &Scores::errors, &Scores::leading, &Scores::median,
                       &Scores::seconds, &Scores::fixes, &Scores::in_gaps, &Scores::undefined,
-                      &Scores::outliers, &Scores::ratio_without_outliers, &Scores::is_the_reference,
-                      &Scores::is_below_reference);
+                      &Scores::is_the_reference, &Scores::is_below_reference);
   }
   const CorrelatedAverage& leads() const { return blocks[static_cast<std::size_t>(leading)]; }
 };
