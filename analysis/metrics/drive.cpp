@@ -15,6 +15,7 @@
 #include "analysis/verdict/verdict.hpp"
 #include "engine/text/number_text.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 #include <tuple>
@@ -23,16 +24,14 @@
 namespace montecarta::analysis {
 namespace {
 
-/// {reference with known errors} Verdict on one cell by each reference.
-using DriveConsistencies = std::vector<DriveConsistency>;
-
 class DrivesOverRuns final : public MergedSums<DrivesOverRuns> {
  public:
   explicit DrivesOverRuns(const RunCriteria& criteria)
       : level_(criteria.level),
         within_(criteria.within),
         are_own_(!criteria.drives.empty()),
-        runs_(criteria.judged_fixes.size()) {}
+        runs_(static_cast<std::size_t>(
+            std::ranges::count_if(criteria.references, &PathAtFixes::has_errors))) {}
   void add(const MeasuredRun& run) override {
     for (std::size_t r = 0; r < runs_.size(); ++r) runs_[r].push_back(run.drives[r]);
   }
@@ -106,16 +105,12 @@ TextTable drive_table(const StudyAnalysis& study) {
 std::vector<std::string> warnings_of(const CellAnalysis& cell, const JudgedReference& reference,
                                      const DriveConsistency& drive) {
   std::vector<std::string> warnings;
-  const auto add = [&](bool applies, const char* key, const Values& values = {}) {
-    if (applies) warnings.push_back(prose("drive", key, values));
+  const auto add = [&](bool applies, const char* key) {
+    if (applies) warnings.push_back(prose("drive", key));
   };
-  const auto count = [](std::size_t n) { return std::to_string(n); };
   add(drive.mean.is_below_reference, "below reference");
   add(reference.has_start, "starts at fix");
   add(cell.filter == "external", "external");
-  add(drive.mean.in_gaps > 0, "in gaps",
-      {{"fixes", count(drive.mean.in_gaps)}, {"gap", readable(kLongestScanGap, 1)}});
-  add(drive.mean.undefined > 0, "undefined", {{"fixes", count(drive.mean.undefined)}});
   return warnings;
 }
 
@@ -154,6 +149,8 @@ Frame::Row drive_numbers(const DriveConsistency& drive) {
                     {"fixes_in_gaps", "1", count(mean.in_gaps)},
                     {"fixes_undefined", "1", count(mean.undefined)},
                     {"median_nees_ratio", "1", mean.median},
+                    {"gross_outliers", "1", count(mean.outliers)},
+                    {"nees_ratio_without_outliers", "1", mean.ratio_without_outliers},
                     {"needed", "min", drive.minutes},
                     {"drives", "1", count(drive.drives)}};
   static const std::vector<ResultNumber<CorrelatedAverage>> kBlockNumbers = {

@@ -32,7 +32,9 @@ class InnovationsOverRuns final : public MergedSums<InnovationsOverRuns> {
   explicit InnovationsOverRuns(const RunCriteria& criteria)
       : criteria_(&criteria),
         has_common_scans_(criteria.drives.empty()),
-        innovations_(criteria.times.size(), criteria.innovation_components) {}
+        innovations_(criteria.times.size(), criteria.innovation_components,
+                     criteria.has_same_measurements ? InnovationSums::Measurements::same
+                                                    : InnovationSums::Measurements::own) {}
   void add(const MeasuredRun& run) override {
     if (run.rows.nis.empty()) return;
     std::span<const double> components;

@@ -99,8 +99,14 @@ double ReferenceScores::*compared_score(const JudgedReference& reference) {
   return reference.compares_raw() ? &ReferenceScores::rms : &ReferenceScores::aligned_rms;
 }
 
-std::string against_baseline(std::size_t better, std::size_t runs) {
+std::string against_baseline(const RunsAgainst& found, std::size_t runs) {
+  const std::size_t better = found.better, equal = found.equal;
   if (runs == 0) return "not tested";
+  if (equal == runs) return "equal in every run";
+  if (equal > 0) {
+    return "better in " + std::to_string(better) + ", equal in " + std::to_string(equal) +
+           ", worse in " + std::to_string(runs - better - equal);
+  }
   if (better == runs) return "better in every run";
   if (better == 0) return "better in no run";
   return 2 * better == runs  ? "better in half of the runs"
@@ -108,22 +114,30 @@ std::string against_baseline(std::size_t better, std::size_t runs) {
                              : "worse in most runs";
 }
 
-std::vector<TextTable::Entry> baseline_row(const CellAnalysis& cell, const CellAnalysis* baseline,
-                                           const JudgedReference& reference) {
+/// Text of the runs that beat the baseline: "2 of 5", "2 of 5, 1 tie".
+std::string beats_text(const RunsAgainst& found, std::size_t runs) {
+  if (found.equal == 0) return of_text(found.better, runs);
+  return of_text(found.better, runs) + ", " + std::to_string(found.equal) +
+         (found.equal == 1 ? " tie" : " ties");
+}
+
+std::vector<TextTable::Entry> baseline_row(const StudyAnalysis& study, const CellAnalysis& cell,
+                                           const CellAnalysis* baseline) {
   const ReferenceAnalysis& leading = cell.get<ReferenceAnalyses>().front();
   std::vector<TextTable::Entry> row = {{"loses the map", lost_text(cell, leading)}};
   if (baseline == nullptr) return row;
-  const auto score = compared_score(reference);
-  const double mean = baseline->get<ReferenceAnalyses>().front().over_runs(score).summary.mean;
-  const std::size_t better = leading.better_than(mean, score), runs = judged_runs(cell, leading);
+  const DrivesOfRuns drives = study.own_drives > 0 ? DrivesOfRuns::own : DrivesOfRuns::same;
+  const RunsAgainst found =
+      runs_against(cell, *baseline, compared_score(study.references.front()), drives);
+  const std::size_t runs = judged_runs(cell, leading);
   const bool is_baseline = &cell == baseline;
-  row.push_back({"beats " + baseline->label, is_baseline ? "-" : of_text(better, runs)});
+  row.push_back({"beats " + baseline->label, is_baseline ? "-" : beats_text(found, runs)});
   const bool is_compared = !is_baseline && runs > 0;
-  const Tone tone = is_compared && better == runs ? Tone::good
-                    : is_compared && better == 0  ? Tone::bad
-                                                  : Tone::plain;
+  const Tone tone = is_compared && found.better == runs              ? Tone::good
+                    : is_compared && found.better + found.equal == 0 ? Tone::bad
+                                                                     : Tone::plain;
   row.push_back({"against EKF-SLAM",
-                 is_baseline ? "is the baseline" : against_baseline(better, runs), Align::left,
+                 is_baseline ? "is the baseline" : against_baseline(found, runs), Align::left,
                  tone});
   return row;
 }
@@ -139,6 +153,7 @@ std::string fixes_text(const StudyAnalysis& study) {
   for (const JudgedReference& reference : study.references) {
     text += (text.empty() ? "" : ", ") + reference.name + " has " +
             std::to_string(reference.fixes) + " fixes within " + drives_in_words(study, reference);
+    if (reference.in_gaps > 0) text += " and " + std::to_string(reference.in_gaps) + " in gaps";
   }
   return text;
 }
@@ -152,6 +167,12 @@ std::string baseline_note(const StudyAnalysis& study) {
   }
   const CellAnalysis* baseline = baseline_of(study);
   if (baseline == nullptr) return prose("references", "no baseline");
+  if (study.own_drives > 0) {
+    return prose("references", "baseline of drives",
+                 {{"compared", reference.compared()},
+                  {"reference", reference.name},
+                  {"baseline", baseline->label}});
+  }
   const Spread compared =
       baseline->get<ReferenceAnalyses>().front().over_runs(compared_score(reference));
   return prose("references", reference.compares_raw() ? "raw baseline" : "aligned baseline",
@@ -271,9 +292,8 @@ TextTable map_table(const StudyAnalysis& study) {
 TextTable baseline_table(const StudyAnalysis& study) {
   if (study.references.empty() || study.references.front().fixes == 0) return {};
   const CellAnalysis* baseline = baseline_of(study);
-  return cell_table(study, [&](const CellAnalysis& cell) {
-    return baseline_row(cell, baseline, study.references.front());
-  });
+  return cell_table(study,
+                    [&](const CellAnalysis& cell) { return baseline_row(study, cell, baseline); });
 }
 
 std::vector<std::string> reference_notes(const StudyAnalysis& study) {
@@ -282,7 +302,7 @@ std::vector<std::string> reference_notes(const StudyAnalysis& study) {
     std::ranges::move(paragraphs("references", key, values), std::back_inserter(notes));
   };
   if (!study.references.empty()) {
-    add("fixes", {{"fixes", fixes_text(study)}});
+    add("fixes", {{"gap", readable(kLongestGap, 1)}, {"fixes", fixes_text(study)}});
     const char* runs = study.own_drives > 0 ? "own drives" : "same drive";
     add("distances", {{"gate", readable(kReferenceGate, 1)},
                       {"runs", prose("references", runs)},

@@ -60,11 +60,9 @@ MapCriteria map_criteria_of(const ResultFile& file) {
 }
 
 DriveCriteria criteria_of_drive(const RunDrive& drive) {
-  DriveCriteria criteria{drive.scan_times, {}, {}};
+  DriveCriteria criteria{drive.scan_times, drive.scan_rows, {}};
   for (const ReferencePath& path : drive.references) {
-    criteria.references.emplace_back(path, drive.scan_times, drive.start);
-    if (path.covariance.empty()) continue;
-    criteria.judged_fixes.emplace_back(path, drive.scan_times, drive.start);
+    criteria.references.emplace_back(path, drive.row_times, drive.start);
   }
   return criteria;
 }
@@ -79,6 +77,7 @@ RunCriteria criteria_of(const ResultFile& file, double level, double within) {
                        .beacons = {},
                        .map = map_criteria_of(file),
                        .joint_scans = file.description().joint_scans,
+                       .scan_rows = file.scan_rows(),
                        .frame = error_frame_of(file),
                        .calibrates = noise_is_matched(file),
                        .runs_at_analyses = study_facts_of(file).runs_at_analyses,
@@ -87,6 +86,8 @@ RunCriteria criteria_of(const ResultFile& file, double level, double within) {
                        .components = {kErrorComponents.begin(), kErrorComponents.end()}};
   const ImportedState imported =
       file.cells().empty() ? ImportedState() : imported_state(file.cells().front());
+  criteria.has_same_measurements =
+      !file.has_errors() && !imported.is_imported() && file.description().drives.empty();
   if (imported.is_imported()) {
     criteria.components = imported.components;
     criteria.units = imported.units;
@@ -98,16 +99,11 @@ RunCriteria criteria_of(const ResultFile& file, double level, double within) {
   }
   for (const ReferencePath& path : file.references()) {
     criteria.references.emplace_back(path, file.times(), file.description().start);
-    if (path.covariance.empty()) continue;
-    criteria.judged_fixes.emplace_back(path, file.scan_times(), file.description().start);
   }
   for (std::size_t run = 0; run < file.description().drives.size(); ++run) {
     criteria.drives.push_back(criteria_of_drive(drive_of_run(file, run)));
   }
-  if (!criteria.drives.empty()) {
-    criteria.references = criteria.drives.front().references;
-    criteria.judged_fixes = criteria.drives.front().judged_fixes;
-  }
+  if (!criteria.drives.empty()) criteria.references = criteria.drives.front().references;
   criteria.beacons = file.landmarks();
   return criteria;
 }

@@ -22,24 +22,24 @@ double median_of_chi_square(std::size_t dimension) {
 
 using BeliefMatrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
-/// Covariance of the pose after a scan, as the filter reports it.
-struct ScanBelief {
+/// Covariance of the pose at a row, as the filter reports it.
+struct RowBelief {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   double inverse_freedom = 0.0;  ///< 1 / degrees of freedom of the covariance; 0 if it is exact
   bool is_known = true;
 };
 
-/// Means and covariances of the pose after all scans.
-struct ScanBeliefs {
-  std::vector<double> mean;  ///< {scan, 3} [m, m, rad] means of the pose
-  std::vector<ScanBelief> beliefs;
+/// Means and covariances of the pose at all rows.
+struct RowBeliefs {
+  std::vector<double> mean;  ///< {row, 3} [m, m, rad] means of the pose
+  std::vector<RowBelief> beliefs;
 };
 
 /// Returns the expected covariance of the mean's error for drawn poses, with Satterthwaite's
 /// degrees of freedom (STATISTICS 4).
-ScanBelief belief_of_draws(const Eigen::Matrix3d& spread, const EffectiveDraws& draws,
-                           std::size_t dimension) {
-  ScanBelief belief;
+RowBelief belief_of_draws(const Eigen::Matrix3d& spread, const EffectiveDraws& draws,
+                          std::size_t dimension) {
+  RowBelief belief;
   belief.is_known = draws.of_mean > static_cast<double>(dimension) + 2.0;
   if (!belief.is_known) return belief;
   belief.covariance = spread * (draws.of_mean + 1.0) / (draws.of_mean - 1.0);
@@ -47,30 +47,48 @@ ScanBelief belief_of_draws(const Eigen::Matrix3d& spread, const EffectiveDraws& 
   return belief;
 }
 
-ScanBeliefs beliefs_of(const RunRows& rows, std::size_t particles, std::size_t scans,
-                       std::size_t dimension) {
-  ScanBeliefs all;
-  const bool has_mixture = !rows.mixture.covariance.empty();
-  for (std::size_t s = 0; s < scans; ++s) {
-    const bool by_draws = particles > 0 && !rows.spread.covariance.empty() && is_drawn(rows, s);
-    const MomentRows& moments = !by_draws && has_mixture ? rows.mixture : rows.spread;
+/// {row} The number of draws that the weighted particles are worth: that of the last scan, since
+/// weights do not change between scans, and all particles before the first one.
+std::vector<EffectiveDraws> draws_of_rows(const RunRows& rows, std::size_t particles,
+                                          std::span<const std::uint32_t> scan_rows) {
+  const std::size_t n = rows.path.mean().size() / 3;
+  std::vector<EffectiveDraws> draws;
+  if (particles == 0) return draws;
+  std::size_t scans = 0;  // number of scans up to the row
+  for (std::size_t row = 0; row < n; ++row) {
+    while (scan_rows.empty() ? scans <= row : scans < scan_rows.size() && scan_rows[scans] <= row) {
+      ++scans;
+    }
+    draws.push_back(scans == 0 ? effective_draws(particles, static_cast<double>(particles))
+                               : draws_at(rows, particles, scans - 1));
+  }
+  return draws;
+}
+
+RowBeliefs beliefs_of(const RunRows& rows, std::size_t particles,
+                      std::span<const std::uint32_t> scan_rows, std::size_t dimension) {
+  const MomentRows &spread = rows.path.spread, &mixture = rows.path.mixture;
+  const std::vector<EffectiveDraws> draws = draws_of_rows(rows, particles, scan_rows);
+  RowBeliefs all;
+  for (std::size_t row = 0; row < rows.path.mean().size() / 3; ++row) {
+    const bool by_draws =
+        particles > 0 && !spread.covariance.empty() && is_drawn(spread, mixture, row);
+    const MomentRows& moments = !by_draws && !mixture.covariance.empty() ? mixture : spread;
     const Eigen::Matrix3d covariance =
-        Eigen::Map<const BeliefMatrix>(moments.covariance.data() + 9 * s);
-    const auto mean = std::span(moments.mean).subspan(3 * s, 3);
+        Eigen::Map<const BeliefMatrix>(moments.covariance.data() + 9 * row);
+    const auto mean = std::span(moments.mean).subspan(3 * row, 3);
     all.mean.insert(all.mean.end(), mean.begin(), mean.end());
-    all.beliefs.push_back(by_draws
-                              ? belief_of_draws(covariance, draws_at(rows, particles, s), dimension)
-                              : ScanBelief{covariance});
+    all.beliefs.push_back(by_draws ? belief_of_draws(covariance, draws[row], dimension)
+                                   : RowBelief{covariance});
   }
   return all;
 }
 
 /// Interpolates the belief at a place; the pose at the start is known exactly.
-ScanBelief belief_between(const std::vector<ScanBelief>& scans,
-                          const PathAtFixes::FixPlace& place) {
-  const ScanBelief& after = scans[place.next];
-  const ScanBelief before = place.next == 0 ? ScanBelief{.inverse_freedom = after.inverse_freedom}
-                                            : scans[place.next - 1];
+RowBelief belief_between(const std::vector<RowBelief>& rows, const PathAtFixes::FixPlace& place) {
+  const RowBelief& after = rows[place.next];
+  const RowBelief before =
+      place.next == 0 ? RowBelief{.inverse_freedom = after.inverse_freedom} : rows[place.next - 1];
   return {(1.0 - place.share) * before.covariance + place.share * after.covariance,
           std::lerp(before.inverse_freedom, after.inverse_freedom, place.share),
           before.is_known && after.is_known};
@@ -99,7 +117,7 @@ void add_whitened(const Eigen::VectorXd& error, VectorSeries& series) {
 }
 
 /// The error in units of P + R; nullopt if P + R is not positive definite.
-std::optional<Eigen::VectorXd> in_units_of(const Eigen::VectorXd& error, const ScanBelief& belief,
+std::optional<Eigen::VectorXd> in_units_of(const Eigen::VectorXd& error, const RowBelief& belief,
                                            const Eigen::MatrixXd& own,
                                            const Eigen::MatrixXd& of_fix) {
   const Eigen::MatrixXd total = own + of_fix;
@@ -116,12 +134,12 @@ std::optional<Eigen::VectorXd> in_units_of(const Eigen::VectorXd& error, const S
 }
 
 bool is_stored(const RunRows& rows) {
-  return !rows.spread.covariance.empty() || !rows.mixture.covariance.empty();
+  return !rows.path.spread.covariance.empty() || !rows.path.mixture.covariance.empty();
 }
 
 }  // namespace
 
-FixErrors errors_at_fixes(const PathAtFixes& fixes, std::span<const double> scan_times,
+FixErrors errors_at_fixes(const PathAtFixes& fixes, std::span<const std::uint32_t> scan_rows,
                           const RunRows& rows, std::size_t particles, ErrorBlock block) {
   FixErrors result;
   const bool needs_heading = block != ErrorBlock::position;
@@ -129,19 +147,13 @@ FixErrors errors_at_fixes(const PathAtFixes& fixes, std::span<const double> scan
   const std::size_t dimension = dimension_of(block);
   const Eigen::Index first = block == ErrorBlock::heading ? 2 : 0;
   const auto d = static_cast<Eigen::Index>(dimension);
-  const ScanBeliefs scans = beliefs_of(rows, particles, scan_times.size(), dimension);
-  const std::vector<Pose> poses = fixes.interpolate(scans.mean);
+  const RowBeliefs path = beliefs_of(rows, particles, scan_rows, dimension);
+  const std::vector<Pose> poses = fixes.interpolate(path.mean);
   for (std::size_t f = 0; f < poses.size(); ++f) {
-    const PathAtFixes::FixPlace& place = fixes.places()[f];
-    const double before = place.next == 0 ? 0.0 : scan_times[place.next - 1];
-    if (scan_times[place.next] - before > kLongestScanGap) {
-      ++result.in_gaps;
-      continue;
-    }
     const double heading = fixes.headings().empty() ? poses[f].heading : fixes.headings()[f];
     const Eigen::Vector2d& position = fixes.positions()[f];
     const Eigen::Vector3d error = boxminus(poses[f], {position.x(), position.y(), heading});
-    const ScanBelief belief = belief_between(scans.beliefs, place);
+    const RowBelief belief = belief_between(path.beliefs, fixes.places()[f]);
     const Eigen::MatrixXd of_fix = fixes.covariances()[f].block(first, first, d, d);
     const auto whitened = in_units_of(error.segment(first, d), belief,
                                       belief.covariance.block(first, first, d, d), of_fix);
@@ -175,12 +187,26 @@ double farthest_square(const VectorSeries& series) {
   return farthest;
 }
 
+void count_outliers(const FixErrors& errors, DriveScores& scores) {
+  const double most = kGrossDeviations * kGrossDeviations * scores.median;
+  double sum = 0.0;
+  for (const double nees : errors.nees) {
+    if (nees > most) {
+      ++scores.outliers;
+    } else {
+      sum += nees;
+    }
+  }
+  const auto n = static_cast<double>(errors.nees.size() - scores.outliers);
+  scores.ratio_without_outliers = sum / n / static_cast<double>(dimension_of(scores.leading));
+}
+
 void judge_leading(const FixErrors& errors, double level, DriveScores& scores) {
   scores.fixes = errors.nees.size();
-  scores.in_gaps = errors.in_gaps;
   scores.undefined = errors.undefined;
   if (scores.fixes < kFewestFixes) return;
   scores.median = median_of(errors.nees) / median_of_chi_square(dimension_of(scores.leading));
+  count_outliers(errors, scores);
   scores.seconds = errors.times.back() - errors.times.front();
   scores.is_the_reference = farthest_square(errors.by_reference) < kSameWithin * kSameWithin;
   scores.is_below_reference = correlated_average(errors.by_reference, level).ratio.upper < 1.0;
@@ -188,12 +214,13 @@ void judge_leading(const FixErrors& errors, double level, DriveScores& scores) {
 
 }  // namespace
 
-DriveScores drive_scores(const PathAtFixes& fixes, std::span<const double> scan_times,
+DriveScores drive_scores(const PathAtFixes& fixes, std::span<const std::uint32_t> scan_rows,
                          const RunRows& rows, std::size_t particles, double level) {
   DriveScores scores;
+  scores.in_gaps = fixes.in_gaps();
   scores.leading = fixes.headings().empty() ? ErrorBlock::position : ErrorBlock::pose;
   for (const ErrorBlock block : kErrorBlocks) {
-    FixErrors errors = errors_at_fixes(fixes, scan_times, rows, particles, block);
+    FixErrors errors = errors_at_fixes(fixes, scan_rows, rows, particles, block);
     if (block == scores.leading) judge_leading(errors, level, scores);
     if (errors.nees.size() < kFewestFixes) continue;
     scores.blocks[static_cast<std::size_t>(block)] = correlated_average(errors.whitened, level);

@@ -31,12 +31,12 @@ void MeasuredRun::measure(const RunCriteria& criteria, std::size_t particles) {
   metrics.measure(rows, particles, times, criteria.frame);
   proper = proper_scores(rows, particles, metrics.estimates());
   references.clear();
-  for (const PathAtFixes& fixes : own != nullptr ? own->references : criteria.references) {
-    references.push_back(measure_against(fixes, rows.path));
-  }
   drives.clear();
-  for (const PathAtFixes& fixes : own != nullptr ? own->judged_fixes : criteria.judged_fixes) {
-    drives.push_back(drive_scores(fixes, times, rows, particles, criteria.level));
+  for (const PathAtFixes& fixes : own != nullptr ? own->references : criteria.references) {
+    references.push_back(measure_against(fixes, rows.path.mean()));
+    if (!fixes.has_errors()) continue;
+    const auto scan_rows = own != nullptr ? own->scan_rows : criteria.scan_rows;
+    drives.push_back(drive_scores(fixes, scan_rows, rows, particles, criteria.level));
     if (own == nullptr)
       drives.back().errors = {};  // one common drive needs no errors, and there may be many runs
   }

@@ -25,7 +25,7 @@ struct MeasuredRun {
   std::span<const double> times;  ///< [s] {scan} time of each scan
   RunMetrics metrics;
   std::vector<ReferenceRun> references;
-  /// {reference with known errors} scores at the fixes RunCriteria::judged_fixes.
+  /// {reference with known errors} scores at its fixes.
   std::vector<DriveScores> drives;
   /// Present if the final map is stored and beacons are known.
   std::optional<BeaconScores> beacons;

@@ -26,11 +26,11 @@ std::string name_of(Moments moments) {
   return std::array{"corrected", "mixture", "spread"}.at(static_cast<std::size_t>(moments));
 }
 
-bool is_drawn(const RunRows& rows, std::size_t s) {
-  const std::vector<double>&spread = rows.spread.covariance, &mixture = rows.mixture.covariance;
-  if (mixture.empty()) return true;
-  const auto first = static_cast<std::ptrdiff_t>(9 * s);
-  return !std::equal(spread.begin() + first, spread.begin() + first + 9, mixture.begin() + first);
+bool is_drawn(const MomentRows& spread, const MomentRows& mixture, std::size_t row) {
+  if (mixture.covariance.empty()) return true;
+  const auto first = static_cast<std::ptrdiff_t>(9 * row);
+  const auto begin = spread.covariance.begin() + first;
+  return !std::equal(begin, begin + 9, mixture.covariance.begin() + first);
 }
 
 EffectiveDraws draws_at(const RunRows& rows, std::size_t particles, std::size_t s) {

@@ -46,9 +46,14 @@ constexpr std::size_t dimension_of(ErrorBlock block) {
   return block == ErrorBlock::pose ? 3 : block == ErrorBlock::position ? 2 : 1;
 }
 
-/// Returns whether scan `s` of a particle filter drew poses, which the spread then describes. If a
-/// filter with a mixture did not draw, spread and mixture have the same covariance.
-bool is_drawn(const RunRows& rows, std::size_t s);
+/// Returns whether a particle filter drew poses before row `row` of its moments, which the spread
+/// then describes. If a filter with a mixture did not draw, spread and mixture have the same
+/// covariance.
+bool is_drawn(const MomentRows& spread, const MomentRows& mixture, std::size_t row);
+/// The same at scan `s`.
+inline bool is_drawn(const RunRows& rows, std::size_t s) {
+  return is_drawn(rows.spread, rows.mixture, s);
+}
 
 /// Number of draws that the weighted particles at scan `s` are worth; all of them if no effective
 /// sample size is stored.

@@ -15,27 +15,40 @@ Pose between(const Pose& before, const Pose& after, double share) {
   return {before.x + way(0), before.y + way(1), wrap(before.heading + way(2))};
 }
 
+bool are_same(const Eigen::Vector2d& position, const Pose& start) {
+  constexpr double kSame = 1e-6;  // [m] largest distance at which two positions count as equal
+  return (position - Eigen::Vector2d(start.x, start.y)).norm() < kSame;
+}
+
+/// Returns whether an estimate exists at a time [s] between row `next` and the one before.
+bool is_estimated(double time, std::span<const double> times, std::size_t next) {
+  const double before = next == 0 ? 0.0 : times[next - 1], after = times[next];
+  return after - before <= kLongestGap + kTimeAtPose ||
+         std::min(time - before, after - time) <= kTimeAtPose;
+}
+
 }  // namespace
 
 PathAtFixes::PathAtFixes(const ReferencePath& reference, std::span<const double> times,
                          const Pose& start)
-    : start_(start) {
+    : start_(start), has_errors_(!reference.covariance.empty()) {
   used_.name = reference.name;
   for (std::size_t f = 0; f < reference.time.size(); ++f) {
     const double time = reference.time[f];
     if (times.empty() || !(time >= 0.0 && time <= times.back())) continue;
+    const bool is_first = places_.empty() && in_gaps_ == 0;
+    if (is_first) has_start_ = are_same(reference.position[f], start);
+    const FixPlace place = place_of(time, times);
+    if (!is_estimated(time, times, place.next)) {
+      ++in_gaps_;
+      continue;
+    }
     used_.time.push_back(time);
     used_.position.push_back(reference.position[f]);
     if (!reference.heading.empty()) used_.heading.push_back(reference.heading[f]);
     if (!reference.covariance.empty()) used_.covariance.push_back(reference.covariance[f]);
-    places_.push_back(place_of(time, times));
+    places_.push_back(place);
   }
-}
-
-bool PathAtFixes::has_start() const {
-  constexpr double kSame = 1e-6;  // [m] largest distance at which two positions count as equal
-  const Eigen::Vector2d start(start_.x, start_.y);
-  return !used_.position.empty() && (used_.position.front() - start).norm() < kSame;
 }
 
 PathAtFixes::FixPlace PathAtFixes::place_of(double time, std::span<const double> times) {

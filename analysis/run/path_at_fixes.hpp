@@ -13,9 +13,18 @@
 
 namespace montecarta::analysis {
 
-/// The fixes of a reference that lie within a drive's time span, and the place of each between the
-/// rows of an estimated path. It is the same for all runs of all cells; any number of threads may
-/// use it.
+/// The longest time [s] between the stored poses before and after a fix that is judged, because
+/// estimates are interpolated linearly between them.
+inline constexpr double kLongestGap = 1.0;
+
+/// Times [s] that differ by no more than this count as the same: a fix at a stored pose is judged
+/// beside any gap.
+inline constexpr double kTimeAtPose = 1e-3;
+
+/// The fixes of a reference at which an estimate exists, and the place of each between the rows of
+/// an estimated path. All metrics of a recorded drive use these fixes: those within the drive's
+/// time span that lie between stored poses at most kLongestGap apart, or at a stored pose. It is
+/// the same for all runs of all cells; any number of threads may use it.
 class PathAtFixes {
  public:
   /// Takes the `times` [s] of a path's rows, increasing; the vehicle stands at `start` at time 0.
@@ -23,6 +32,10 @@ class PathAtFixes {
   PathAtFixes(const ReferencePath& reference, std::span<const double> times, const Pose& start);
 
   const std::string& name() const { return used_.name; }
+  /// Number of fixes within the drive that are not used, because they lie in a longer gap.
+  std::size_t in_gaps() const { return in_gaps_; }
+  /// Whether the reference states its own errors.
+  bool has_errors() const { return has_errors_; }
   /// [s] {fix used} time of the fix.
   const std::vector<double>& times() const { return used_.time; }
   /// [m] {fix used} position of the fix.
@@ -40,8 +53,9 @@ class PathAtFixes {
   };
   /// {fix used} place on the path.
   const std::vector<FixPlace>& places() const { return places_; }
-  /// Returns whether the start was taken from a fix: whether the two agree to a micrometre.
-  bool has_start() const;
+  /// Returns whether the start was taken from a fix: whether it agrees with the first one within
+  /// the drive to a micrometre.
+  bool has_start() const { return has_start_; }
 
   /// Interpolates `path` {row, 3} [m, m, rad] linearly in time at every fix; the heading turns the
   /// shorter way.
@@ -52,6 +66,9 @@ class PathAtFixes {
 
   Pose start_;
   ReferencePath used_;
+  std::size_t in_gaps_ = 0;
+  bool has_errors_;
+  bool has_start_ = false;
   std::vector<FixPlace> places_;
 };
 

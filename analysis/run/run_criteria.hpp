@@ -18,23 +18,23 @@ namespace montecarta::analysis {
 
 /// Criteria for a run on a drive of its own.
 struct DriveCriteria {
-  std::span<const double> times;        ///< [s] {scan} time of each scan
-  std::vector<PathAtFixes> references;  ///< {reference} fixes of the reference on this drive
-  /// {reference with known errors} fixes of the reference on this drive.
-  std::vector<PathAtFixes> judged_fixes;
+  std::span<const double> times;  ///< [s] {scan} time of each scan
+  /// {scan} row of each scan; empty if rows are scans.
+  std::span<const std::uint32_t> scan_rows;
+  std::vector<PathAtFixes> references;  ///< {reference} its fixes on the path of this drive
 };
 
 /// Criteria for runs, common to all cells of a file. The file must outlive them.
 struct RunCriteria {
-  std::span<const double> times;  ///< [s] {scan} time of each scan
-  double level = kUsualLevel;     ///< level of NEES bounds and tests
-  double within = kUsualMargin;   ///< margin of the verdict (judge())
-  std::vector<PathAtFixes> references;
+  std::span<const double> times;               ///< [s] {scan} time of each scan
+  double level = kUsualLevel;                  ///< level of NEES bounds and tests
+  double within = kUsualMargin;                ///< margin of the verdict (judge())
+  std::vector<PathAtFixes> references;         ///< {reference} its fixes on the path of the rows
   std::vector<Eigen::Vector2d> beacons;        ///< [m] positions of surveyed beacons
   MapCriteria map;                             ///< criteria for the maps of a simulation
   std::span<const std::uint32_t> joint_scans;  ///< scans at which joint estimates are stored
-  /// {reference with known errors} fixes of the reference on the path of the scans.
-  std::vector<PathAtFixes> judged_fixes = {};
+  /// {scan} row of each scan; empty if rows are scans.
+  std::span<const std::uint32_t> scan_rows = {};
   ErrorFrame frame = ErrorFrame::of_truth;
   /// Number of components if the judged errors are innovations, which are white; else 0.
   std::size_t innovation_components = 0;
@@ -48,9 +48,11 @@ struct RunCriteria {
   /// {component} names of the components of the judged errors.
   std::vector<std::string> components = {};
   std::vector<std::string> units = {};  ///< {component} of imported errors, else empty
+  /// Whether all runs process one recorded drive, and so have the same measurements.
+  bool has_same_measurements = false;
   /// {run of the study} criteria for each drive; empty if all runs process one drive. Otherwise
-  /// `times` are those of the longest drive, and `references` and `judged_fixes` those of the
-  /// first. Such drives are recordings without truth: they have no errors and no NEES.
+  /// `times` are those of the drive with the most scans, and `references` those of the first. Such
+  /// drives are recordings without truth: they have no errors and no NEES.
   std::vector<DriveCriteria> drives = {};
 
   /// Level of a verdict on this number of runs, such that all interim analyses together have

@@ -25,7 +25,7 @@ std::size_t RunReader::scans_of(std::size_t i) const {
 }
 
 void RunReader::keep_scans(std::size_t width, std::size_t i, std::vector<double>& rows) const {
-  const auto scan_rows = std::span(file_->scan_rows()).first(scans_of(i));
+  const auto scan_rows = drive_of_run(*file_, file_->runs()[i]).scan_rows;
   for (std::size_t s = 0; s < scan_rows.size(); ++s) {
     if (scan_rows[s] == s) continue;
     std::copy_n(rows.begin() + static_cast<std::ptrdiff_t>(scan_rows[s] * width), width,
@@ -49,13 +49,24 @@ void RunReader::read_at_scans(std::string_view column, std::size_t width, std::s
   keep_scans(width, i, out);
 }
 
-void RunReader::read_path(std::size_t i, std::vector<double>& out) const {
-  if (drive_of_run(*file_, file_->runs()[i]).references.empty()) return out.clear();
-  out.resize(file_->times().size() * 3);
-  const bool mixture = has("pose_mean_mixture", i);
-  file_->read(*cell_, mixture ? "pose_mean_mixture" : "pose_mean", i, std::span(out));
-  // The rows of such a drive are its scans.
-  if (!file_->description().drives.empty()) out.resize(scans_of(i) * 3);
+void RunReader::read_rows(std::string_view column, std::size_t width, std::size_t i,
+                          std::vector<double>& out) const {
+  if (!has(column, i)) return out.clear();
+  out.resize(file_->times().size() * width);
+  file_->read(*cell_, column, i, std::span(out));
+  out.resize(drive_of_run(*file_, file_->runs()[i]).row_times.size() * width);
+}
+
+void RunReader::read_path(std::size_t i, PathRows& out) const {
+  const auto references = drive_of_run(*file_, file_->runs()[i]).references;
+  out = {};
+  if (references.empty()) return;
+  read_rows("pose_mean", 3, i, out.spread.mean);
+  read_rows("pose_mean_mixture", 3, i, out.mixture.mean);
+  const auto is_known = [](const ReferencePath& path) { return !path.covariance.empty(); };
+  if (std::ranges::none_of(references, is_known)) return;
+  read_rows("pose_covariance", 9, i, out.spread.covariance);
+  read_rows("pose_covariance_mixture", 9, i, out.mixture.covariance);
 }
 
 void RunReader::read_final_map(std::size_t i, RunRows& rows) const {

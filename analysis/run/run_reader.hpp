@@ -16,6 +16,8 @@ namespace montecarta::analysis {
 struct RunDrive {
   std::span<const double> scan_times;         ///< [s] {scan} time of each scan
   std::span<const std::uint32_t> scan_steps;  ///< {scan} step after which the scan was taken
+  std::span<const double> row_times;          ///< [s] {row} time of each row of estimates
+  std::span<const std::uint32_t> scan_rows;   ///< {scan} row of each scan
   Pose start;                                 ///< pose before the first step
   std::span<const ReferencePath> references;  ///< references of a recorded drive
 };
@@ -24,9 +26,18 @@ struct RunDrive {
 /// must outlive it.
 inline RunDrive drive_of_run(const ResultFile& file, std::uint64_t run) {
   const ResultDescription& all = file.description();
-  if (all.drives.empty()) return {all.scan_times, all.scan_steps, all.start, all.references};
+  if (all.drives.empty()) {
+    return {all.scan_times, all.scan_steps, all.times, all.scan_rows, all.start, all.references};
+  }
   const OwnDrive& own = all.drives.at(run);
-  return {own.scan_times, own.scan_steps, own.start, own.references};
+  const bool has_steps = !own.step_times.empty();
+  const auto scans = std::span(all.scan_rows).first(own.scan_times.size());
+  return {own.scan_times,
+          own.scan_steps,
+          has_steps ? own.step_times : own.scan_times,
+          has_steps ? own.scan_steps : scans,
+          own.start,
+          own.references};
 }
 
 /// The columns that are read: those stored for every run, or all that are stored for a run in full.
@@ -49,9 +60,13 @@ class RunReader {
   /// Returns whether run index `i` has the column and Reach allows it to be read.
   bool has(std::string_view column, std::size_t i) const;
   void read_truth(std::size_t i, std::vector<double>& out) const;
-  void read_path(std::size_t i, std::vector<double>& out) const;
+  /// Reads the estimates at all rows, if the drive has references.
+  void read_path(std::size_t i, PathRows& out) const;
   /// Reads the map after the last scan, also from columns that hold the map of every scan.
   void read_final_map(std::size_t i, RunRows& rows) const;
+  /// Reads all rows of a column over time; `width` numbers a row. Empty if it is not stored.
+  void read_rows(std::string_view column, std::size_t width, std::size_t i,
+                 std::vector<double>& out) const;
   /// Reads the scans of a column over time; `width` numbers a row. Empty if it is not stored.
   void read_at_scans(std::string_view column, std::size_t width, std::size_t i,
                      std::vector<double>& out) const;

@@ -36,6 +36,17 @@ struct MomentRows {
   std::vector<double> covariance;  ///< {scan, 3, 3} covariance of the pose
 };
 
+/// Mean and covariance of the pose at every stored row of one run, also between scans.
+struct PathRows {
+  MomentRows spread;   ///< covariance empty if no reference has known errors
+  MomentRows mixture;  ///< empty if not stored
+
+  /// {row, 3} [m, m, rad] The leading mean; empty without references.
+  const std::vector<double>& mean() const {
+    return mixture.mean.empty() ? spread.mean : mixture.mean;
+  }
+};
+
 /// Counts of the associations of every scan (AssociationCounts); empty where not stored.
 struct AssociationRows {
   /// {scan} number of associations of each kind.
@@ -90,8 +101,7 @@ struct RunRows {
   std::vector<double> nis;             ///< {scan} normalised innovation squared (NIS)
   std::vector<std::uint32_t> nis_dof;  ///< {scan} number of degrees of freedom of the NIS
   AssociationRows association;
-  /// {row, 3} [m, m, rad] leading mean, also between scans; empty without references.
-  std::vector<double> path;
+  PathRows path;                 ///< estimates at all rows; empty without references
   std::vector<double> map_size;  ///< {scan} number of landmarks in the map
   /// {scan} [1/rad^2] information about the heading of path and map; empty if not stored.
   std::vector<double> rotation_information;

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 
 namespace montecarta::analysis {
 namespace {
@@ -43,11 +45,6 @@ std::size_t ReferenceAnalysis::lost() const {
       runs, [](const ReferenceScores& run) { return run.has_fixes() && run.lost(); }));
 }
 
-std::size_t ReferenceAnalysis::better_than(double baseline, double ReferenceScores::*score) const {
-  return static_cast<std::size_t>(std::ranges::count_if(
-      runs, [&](const ReferenceScores& run) { return run.*score < baseline; }));
-}
-
 void ReferenceAccumulator::add(const ReferenceRun& run) {
   runs_.push_back(run.scores);
   if (fixes_ == Fixes::own) return;
@@ -68,6 +65,45 @@ const CellAnalysis* baseline_of(const StudyAnalysis& study) {
     return cell.filter == "ekf_slam" && cell.complete > 0 && !cell.get<ReferenceAnalyses>().empty();
   });
   return found == study.cells.end() ? nullptr : &*found;
+}
+
+namespace {
+
+const ReferenceAnalysis& leading_of(const CellAnalysis& cell) {
+  return cell.get<ReferenceAnalyses>().front();
+}
+
+/// The score of the run of this number; infinite if it failed.
+double score_of_run(const CellAnalysis& cell, std::uint64_t run, double ReferenceScores::*score) {
+  const auto found = std::ranges::lower_bound(cell.runs, run);
+  if (found == cell.runs.end() || *found != run) return std::numeric_limits<double>::infinity();
+  return leading_of(cell).runs[static_cast<std::size_t>(found - cell.runs.begin())].*score;
+}
+
+/// Returns whether two scores differ by rounding alone.
+bool are_equal(double a, double b) {
+  constexpr double kRounding = 1e-9;
+  return a == b || std::abs(a - b) <= kRounding * std::min(std::abs(a), std::abs(b));
+}
+
+}  // namespace
+
+RunsAgainst runs_against(const CellAnalysis& cell, const CellAnalysis& baseline,
+                         double ReferenceScores::*score, DrivesOfRuns drives) {
+  const double mean = leading_of(baseline).over_runs(score).summary.mean;
+  RunsAgainst found;
+  const std::vector<ReferenceScores>& runs = leading_of(cell).runs;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const double one = runs[i].*score;
+    const double other =
+        drives == DrivesOfRuns::own ? score_of_run(baseline, cell.runs[i], score) : mean;
+    if (are_equal(one, other)) {
+      ++found.equal;
+    } else if (one < other) {
+      ++found.better;
+    }
+  }
+  return found;
 }
 
 std::string no_truth_sentence(const StudyAnalysis& study) {

@@ -27,8 +27,6 @@ struct ReferenceAnalysis {
   std::size_t with_fixes() const;
   /// Number of runs that lost the map.
   std::size_t lost() const;
-  /// Number of runs with a `score` below `baseline` [m].
-  std::size_t better_than(double baseline, double ReferenceScores::*score) const;
 };
 
 /// {reference of the drive} comparisons, the leading one first.
@@ -61,6 +59,21 @@ std::string no_truth_sentence(const StudyAnalysis& study);
 /// The baseline: the first cell with the filter ekf_slam and complete runs; nullptr if there is
 /// none.
 const CellAnalysis* baseline_of(const StudyAnalysis& study);
+
+/// Numbers of runs that are better than a baseline, and that equal it.
+struct RunsAgainst {
+  std::size_t better = 0, equal = 0;
+};
+
+/// Whether all runs process the same drive, or each its own.
+enum class DrivesOfRuns { same, own };
+
+/// Compares the runs of a cell with those of `baseline`, by a score against the leading reference.
+/// Runs on the same drive are compared with the mean over the baseline's runs, runs on drives of
+/// their own with the baseline's run on that drive. A run that the baseline failed is better.
+/// Scores that differ by rounding alone are equal.
+RunsAgainst runs_against(const CellAnalysis& cell, const CellAnalysis& baseline,
+                         double ReferenceScores::*score, DrivesOfRuns drives);
 
 /// Numbers of a cell for one reference, with their names in files: mean, standard error, median,
 /// least and greatest of each over runs; and the numbers of its maps.

@@ -173,6 +173,7 @@ StudyAnalysis begin(const ResultFile& file, double level, std::optional<double> 
   }
   study.duration = study.times.empty() ? 0.0 : study.times.back();
   study.has_truth = file.has_errors();
+  study.rows_are_scans = file.times().size() == file.scan_times().size();
   study.own_drives = file.description().drives.size();
   if (!file.cells().empty()) study.imported = imported_state(file.cells().front());
   if (study.imported.is_imported()) study.study_runs = study.runs_here;  // numbers may start at 1
@@ -189,7 +190,8 @@ std::vector<JudgedReference> judged_references(const RunCriteria& criteria) {
     reference.fixes += fixes.times().size();
     reference.drives += fixes.times().empty() ? 0 : 1;
     reference.has_heading = reference.has_heading || !fixes.headings().empty();
-    reference.has_errors = reference.has_errors || !fixes.covariances().empty();
+    reference.has_errors = reference.has_errors || fixes.has_errors();
+    reference.in_gaps += fixes.in_gaps();
     reference.has_start = reference.has_start || fixes.has_start();
   };
   for (std::size_t r = 0; r < criteria.references.size(); ++r) {

@@ -17,13 +17,14 @@ namespace montecarta::analysis {
 /// An independent measurement of the path, by which estimates are judged.
 struct JudgedReference {
   std::string name;
-  /// [s] {fix within the drive}; empty if runs have drives of their own.
+  /// [s] {judged fix} times; empty if runs have drives of their own.
   std::vector<double> times;
-  std::size_t fixes = 0;   ///< number of fixes within the drive, or within all drives
+  std::size_t fixes = 0;   ///< number of judged fixes (PathAtFixes), of all drives
   std::size_t drives = 0;  ///< number of drives that have fixes
   bool has_heading = false;
   bool has_errors = false;  ///< whether its own errors are known, so that there is a NEES
   bool has_start = false;   ///< whether the drive starts at one of its fixes
+  std::size_t in_gaps = 0;  ///< number of fixes left out (PathAtFixes::in_gaps()), of all drives
 
   /// Returns whether cells are compared by raw distances: then the errors of the reference are
   /// known, so it is in the frame of the drive. Else they are compared by aligned distances, since
@@ -50,6 +51,7 @@ struct StudyAnalysis {
   std::vector<double> joint_times;  ///< [s] {scan with joint estimates} time of each of these scans
   /// Whether the true path is known: without it there are no errors and no NEES.
   bool has_truth = true;
+  bool rows_are_scans = true;  ///< whether poses are stored at scans only (record.rate = scan)
   std::size_t own_drives = 0;  ///< number of runs if each is a recorded drive of its own; else 0
   ImportedState imported;      ///< state of files that 'montecarta judge' made
   std::vector<JudgedReference> references;  ///< references of a recorded drive; the first one leads

@@ -41,12 +41,14 @@ CorrelatedAverage mean_over_runs(std::span<const DriveScores> runs, std::size_t 
 
 DriveScores mean_scores(std::span<const DriveScores> runs) {
   DriveScores all = runs.front();
-  all.median = 0.0;
+  all.median = all.ratio_without_outliers = 0.0;
   for (std::size_t block = 0; block < all.blocks.size(); ++block) {
     all.blocks[block] = mean_over_runs(runs, block);
   }
   for (const DriveScores& run : runs) {
     all.median += run.median / static_cast<double>(runs.size());
+    all.ratio_without_outliers += run.ratio_without_outliers / static_cast<double>(runs.size());
+    all.outliers = std::max(all.outliers, run.outliers);
     all.in_gaps = std::max(all.in_gaps, run.in_gaps);
     all.undefined = std::max(all.undefined, run.undefined);
     all.fixes = std::min(all.fixes, run.fixes);
@@ -75,7 +77,7 @@ CorrelatedAverage over_own_drives(std::span<const DriveScores> runs, std::size_t
 DriveScores sums_over_drives(std::span<const DriveScores> runs, double level) {
   DriveScores all;
   all.leading = runs.front().leading;
-  all.median = 0.0;
+  all.median = all.ratio_without_outliers = 0.0;
   double judged = 0.0;
   for (std::size_t block = 0; block < all.blocks.size(); ++block) {
     all.blocks[block] = over_own_drives(runs, block, level);
@@ -86,12 +88,15 @@ DriveScores sums_over_drives(std::span<const DriveScores> runs, double level) {
     if (!(run.leads().effective_samples > 0.0)) continue;
     judged += 1.0;
     all.median += run.median;
+    all.ratio_without_outliers += run.ratio_without_outliers;
+    all.outliers += run.outliers;
     all.fixes += run.fixes;
     all.seconds += run.seconds;
     all.is_the_reference = all.is_the_reference || run.is_the_reference;
     all.is_below_reference = all.is_below_reference || run.is_below_reference;
   }
   all.median /= judged;
+  all.ratio_without_outliers /= judged;
   return all;
 }
 
@@ -115,12 +120,12 @@ std::string drives_text(const DriveConsistency& found) {
   return these + ": it would take " + compact(std::ceil(needed)) + " like them";
 }
 
-std::string minutes_text(const DriveConsistency& drive) {
+std::string needed_text(const DriveConsistency& drive) {
   if (drive.drives > 0) return drives_text(drive);
   if (std::isinf(drive.minutes)) return "this drive cannot tell, nor could a longer one";
   const bool is_least = drive.mean.leads().effective_samples < kFewestEffective;
   return std::string("this drive cannot tell: it would need ") + (is_least ? "at least " : "") +
-         compact(std::max(drive.minutes, 1.0)) + " minutes";
+         duration_text(60.0 * std::max(drive.minutes, 1.0));
 }
 
 /// A range of factors in words: "1.2 to 1.4", "more than 1.2".
@@ -162,7 +167,7 @@ std::string in_words(const DriveConsistency& drive) {
       return "conservative: NEES " + factor_words(1.0 / ratio.upper, 1.0 / ratio.lower) +
              " times too small";
     case Answer::undecided:
-      return minutes_text(drive);
+      return needed_text(drive);
     case Answer::inconsistent:
     case Answer::untested:
       break;

@@ -96,6 +96,7 @@ void InnovationSums::Totals::add(std::span<const double> nis, std::span<const st
 void InnovationSums::add(std::uint64_t run, std::span<const double> times,
                          std::span<const double> nis, std::span<const std::uint32_t> dof,
                          std::span<const double> standardised) {
+  if (largest_ && measurements_ == Measurements::same) return;
   const std::size_t d = components_.size();
   std::vector<double> component(standardised.empty() ? 0 : nis.size());
   for (std::size_t k = 0; k < d && !standardised.empty(); ++k) {
@@ -118,6 +119,7 @@ void InnovationSums::add(std::uint64_t run, std::span<const double> times,
 }
 
 void InnovationSums::merge(InnovationSums& next) {
+  if (largest_ && measurements_ == Measurements::same) return;
   merge_into(others_, next.others_);
   merge_into(components_, next.components_);
   if (!next.largest_) return;

@@ -142,9 +142,15 @@ class LaggedProducts {
 /// Adds up the NIS over runs.
 class InnovationSums {
  public:
+  /// Runs with measurements of their own are independent. Runs on one recorded drive have the same
+  /// measurements, so that only the first one counts.
+  enum class Measurements { own, same };
   /// Innovations of `components` components are also correlated component by component.
-  explicit InnovationSums(std::size_t scans, std::size_t components = 0)
-      : others_(scans), components_(components, LaggedProducts(scans)) {}
+  explicit InnovationSums(std::size_t scans, std::size_t components = 0,
+                          Measurements measurements = Measurements::own)
+      : measurements_(measurements),
+        others_(scans),
+        components_(components, LaggedProducts(scans)) {}
 
   /// Adds the innovations of run number `run`: `times` [s], `nis` and `dof`, all {scan}; and, if
   /// components are known, each in units of its deviation, `standardised` {scan, component}, NaN
@@ -184,6 +190,7 @@ class InnovationSums {
   void merge(InnovationSums& next);
   std::vector<ComponentCorrelation> correlated_components(std::uint64_t runs, double level) const;
 
+  Measurements measurements_;
   Totals others_;  ///< sums over all runs except that of `largest_`
   /// Run that is counted with its largest innovation and without it.
   std::optional<LargestRun> largest_;

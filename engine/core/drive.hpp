@@ -99,7 +99,7 @@ class DriveSource {
  public:
   virtual ~DriveSource() = default;
   /// The itinerary of all runs. If every run has its own drive, it is that of the drive with the
-  /// most scans, without references.
+  /// most scans, without references, and has at least as many steps as every drive.
   virtual const Itinerary& itinerary() const = 0;
   /// Number of runs if every run is a different recorded drive, else 0.
   virtual std::size_t own_drives() const { return 0; }

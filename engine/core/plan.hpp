@@ -66,6 +66,8 @@ struct Cell {
   Capabilities reports;
   std::size_t landmarks = 0;                   ///< number of rows of the map columns
   std::optional<ImportedError> imported = {};  ///< nullopt for our own filters
+  /// Whether the estimates depend on the drive alone, and not on random numbers of the run.
+  bool is_deterministic = false;
   /// All resolved settings for the file.
   std::vector<std::pair<std::string, std::string>> settings;
   std::function<std::unique_ptr<SlamFilter>()> make_filter;  ///< makes the filter, on any thread

@@ -114,11 +114,24 @@ void check_scenario(const ResultDescription& d, const Check& check) {
   check_references(d.references, check);
 }
 
-/// Checks the scans of runs that are drives of their own.
+/// Checks the rows of a run that is a drive of its own: its scans, or all of its steps.
+void check_rows(const OwnDrive& drive, const ResultDescription& d, const Check& check) {
+  constexpr const char* kWrong = "a drive has other rows than the file";
+  if (drive.step_times.empty()) return check(d.times.size() == d.scan_times.size(), kWrong);
+  check(drive.step_times.size() <= d.times.size() && are_finite(drive.step_times) &&
+            std::ranges::is_sorted(drive.step_times) &&
+            drive.scan_steps.back() < drive.step_times.size() && d.scan_rows == d.scan_steps,
+        kWrong);
+  for (std::size_t s = 0; s < drive.scan_times.size(); ++s) {
+    check(drive.scan_times[s] == drive.step_times[drive.scan_steps[s]],
+          "a scan of a drive is not at the time of its step");
+  }
+}
+
+/// Checks the runs that are drives of their own.
 void check_drives(const ResultDescription& d, const Check& check) {
   if (d.drives.empty()) return;
-  check(d.drives.size() == d.study_runs && d.times.size() == d.scan_times.size(),
-        "it has not one drive for each run, with rows at scans");
+  check(d.drives.size() == d.study_runs, "it has not one drive for each run");
   for (const OwnDrive& drive : d.drives) {
     check(!drive.scan_times.empty() && drive.scan_times.size() <= d.scan_times.size() &&
               drive.scan_times.size() == drive.scan_steps.size(),
@@ -127,6 +140,7 @@ void check_drives(const ResultDescription& d, const Check& check) {
               increases(drive.scan_steps) &&
               are_finite({drive.start.x, drive.start.y, drive.start.heading}),
           "the times or the start of a drive are no numbers, or do not increase");
+    check_rows(drive, d, check);
     check_references(drive.references, check);
     check(std::ranges::equal(drive.references, d.drives.front().references, are_alike),
           "its drives have different references");

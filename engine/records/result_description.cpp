@@ -42,8 +42,9 @@ void describe_time(const Itinerary& itinerary, bool scans_only, ResultDescriptio
   if (scans_only) std::iota(result.scan_rows.begin(), result.scan_rows.end(), 0U);
 }
 
-OwnDrive own_drive(const Itinerary& itinerary) {
+OwnDrive own_drive(const Itinerary& itinerary, bool scans_only) {
   OwnDrive drive{itinerary.start, {}, itinerary.scan_step, itinerary.references};
+  if (!scans_only) drive.step_times = itinerary.step_time;
   for (const std::uint32_t step : itinerary.scan_step)
     drive.scan_times.push_back(itinerary.step_time[step]);
   return drive;
@@ -106,7 +107,7 @@ ResultDescription describe(const StudyPlan& plan, const TextPairs& provenance) {
   result.waypoints = itinerary.waypoints;
   result.references = itinerary.references;
   for (std::size_t run = 0; run < plan.drives->own_drives(); ++run) {
-    result.drives.push_back(own_drive(plan.drives->itinerary_of(run)));
+    result.drives.push_back(own_drive(plan.drives->itinerary_of(run), plan.columns.scans_only));
   }
   result.has_truth = itinerary.has_truth;
   result.own_landmarks = plan.own_landmarks && !itinerary.landmarks.empty();

@@ -46,6 +46,8 @@ struct OwnDrive {
   std::vector<double> scan_times;         ///< [s] {scan} at most as many as the file has scans
   std::vector<std::uint32_t> scan_steps;  ///< step after which each scan is taken
   std::vector<ReferencePath> references;  ///< references, with the same names in all drives
+  /// [s] {row} time of each row of this drive if rows are steps; empty if rows are scans.
+  std::vector<double> step_times = {};
 };
 
 /// Runs whose sums over groups a file holds instead of rows.
@@ -76,7 +78,7 @@ struct ResultDescription {
   std::vector<Eigen::Vector2d> waypoints;  ///< [m] way-points; may be empty
   std::vector<ReferencePath> references;   ///< references of a recorded drive
   /// {run of the study} drives if every run has its own, else empty. With drives, `references` is
-  /// empty, and the times are those of the longest drive.
+  /// empty, and the times are those of the drive with the most scans.
   std::vector<OwnDrive> drives;
   bool has_truth = true;       ///< whether true poses are stored
   bool own_landmarks = false;  ///< whether true landmarks of runs are stored

@@ -338,6 +338,7 @@ void visit_scenario(Fields& scenario, Description& d) {
     one.scale("scan_time", drive.scan_times, {"s", "time of the scan"});
     one.along("scan_step", "scan_time", drive.scan_steps,
               {"1", "control step after which the scan is taken"});
+    one.scale_if_any("step_time", drive.step_times, {"s", "time at the end of the control step"});
     visit_references(one, drive.references);
   });
 }

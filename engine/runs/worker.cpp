@@ -89,9 +89,13 @@ std::size_t largest_record(std::span<const RecordLayout> layouts) {
 
 }  // namespace
 
-Worker::CellState::CellState(const Cell& cell, const RecordLayout& layout,
-                             std::span<std::byte> memory)
-    : filter(cell.make_filter()), record(layout, memory), recorder(record) {}
+bool are_runs_equal(const StudyPlan& plan, const Cell& cell) {
+  const DriveSource& drives = *plan.drives;
+  return cell.is_deterministic && !drives.itinerary().has_truth && drives.own_drives() == 0;
+}
+
+Worker::CellState::CellState(const Cell& cell, RunRecord&& memory)
+    : filter(cell.make_filter()), record(std::move(memory)), recorder(record) {}
 
 Worker::Worker(const Session& session)
     : session_(session),
@@ -114,7 +118,13 @@ void Worker::execute(const Task& task) {
   const RunConditions conditions{
       plan.seed,    run, plan.drives->itinerary_of(run), drive_, session_.spare_threads,
       session_.stop};
-  if (run >= plan.columns.full_runs) return run_into(here.record, here.recorder, task, conditions);
+  if (run >= plan.columns.full_runs) {
+    if (here.holds_every_run) return store(here.record, task);
+    run_into(here.record, here.recorder, task, conditions);
+    here.holds_every_run =
+        are_runs_equal(plan, plan.cells[task.cell]) && here.record.status() != RunStatus::missing;
+    return;
+  }
   RunRecord record(session_.full_layouts[task.cell]);  // few runs need it, so it is not kept
   Recorder recorder(record);
   run_into(record, recorder, task, conditions);
@@ -123,7 +133,10 @@ void Worker::execute(const Task& task) {
 void Worker::run_into(RunRecord& record, Recorder& recorder, const Task& task,
                       const RunConditions& conditions) {
   SlamFilter& filter = *cell_state(task.cell).filter;
-  if (run_one(conditions, filter, recorder, record) == RunEnd::dropped) return;
+  if (run_one(conditions, filter, recorder, record) == RunEnd::recorded) store(record, task);
+}
+
+void Worker::store(const RunRecord& record, const Task& task) {
   session_.writer.write(task.cell, task.run_index, record);
   session_.progress.runs_ended(record.status());
 }
@@ -138,8 +151,12 @@ void Worker::fetch_drive(std::size_t run_index) {
 
 Worker::CellState& Worker::cell_state(std::size_t cell) {
   std::unique_ptr<CellState>& place = cell_states_[cell];
-  if (!place)
-    place = std::make_unique<CellState>(session_.plan.cells[cell], session_.layouts[cell], memory_);
+  if (place) return *place;
+  const Cell& planned = session_.plan.cells[cell];
+  const RecordLayout& layout = session_.layouts[cell];
+  place = are_runs_equal(session_.plan, planned)
+              ? std::make_unique<CellState>(planned, RunRecord(layout))
+              : std::make_unique<CellState>(planned, RunRecord(layout, memory_));
   return *place;
 }
 

@@ -102,6 +102,10 @@ struct Session {
   Progress& progress;
 };
 
+/// Returns whether all runs of a cell are the same: a filter without random numbers on one recorded
+/// drive. A worker computes such a run once and writes its record for every run.
+bool are_runs_equal(const StudyPlan& plan, const Cell& cell);
+
 /// Processes tasks until none is left or a stop is requested. Keeps its drive, its record and one
 /// filter per cell, so that nothing is allocated after the first run of each cell. For use by one
 /// thread.
@@ -113,22 +117,25 @@ class Worker {
  private:
   /// The objects of a cell on this worker.
   struct CellState {
-    CellState(const Cell& cell, const RecordLayout& layout, std::span<std::byte> memory);
+    CellState(const Cell& cell, RunRecord&& memory);
     std::unique_ptr<SlamFilter> filter;
     RunRecord record;
     Recorder recorder;
+    bool holds_every_run = false;  ///< whether `record` is that of every run
   };
 
   void fetch_drive(std::size_t run_index);
   CellState& cell_state(std::size_t cell);
   void execute(const Task& task);
+  void store(const RunRecord& record, const Task& task);
   void run_into(RunRecord& record, Recorder& recorder, const Task& task,
                 const RunConditions& conditions);
 
   const Session& session_;
   Drive drive_;
   std::optional<std::size_t> drive_run_index_;  ///< run index of drive_; nullopt if it is invalid
-  std::vector<std::byte> memory_;               ///< memory of the record, which all cells share
+  /// Memory of the record, which all cells share but those whose runs are all the same.
+  std::vector<std::byte> memory_;
   std::vector<std::unique_ptr<CellState>> cell_states_;
 };
 

@@ -8,6 +8,7 @@
 #include "engine/records/posix_file.hpp"
 #include "engine/records/result_description.hpp"
 #include "engine/records/run_record.hpp"
+#include "engine/runs/worker.hpp"
 #include "engine/text/number_text.hpp"
 #include "engine/text/wrapped_text.hpp"
 #include "experiments/commands/arguments.hpp"
@@ -208,14 +209,14 @@ Costs costs_of(const StudyPlan& plan) {
   costs.per_thread = 2.0 * static_cast<double>(itinerary.steps() * sizeof(Pose));
   for (std::size_t c = 0; c < plan.cells.size(); ++c) {
     const std::optional<Trial> first = trial_of(plan.cells[c], plan, drive);
-    const double cpu_seconds = first.value_or(Trial{}).seconds * alike;
+    const double seconds = first.value_or(Trial{}).seconds;
     const auto bytes = static_cast<double>(layouts[c].bytes());
     const double more = static_cast<double>(full_layouts[c].bytes()) - bytes;
     const double all = plan.columns.sums ? bytes_of_sums(plan.runs_here(), itinerary.scans())
                                          : bytes * runs + more * full_runs;
     costs.rows.push_back(
-        {time_of_run(first, cpu_seconds / runs), bytes_text(bytes), bytes_text(all)});
-    costs.cpu_seconds += cpu_seconds;
+        {time_of_run(first, seconds * alike / runs), bytes_text(bytes), bytes_text(all)});
+    costs.cpu_seconds += seconds * (engine::are_runs_equal(plan, plan.cells[c]) ? 1.0 : alike);
     costs.per_thread += bytes + std::min(full_runs, 1.0) * more + first.value_or(Trial{}).bytes;
   }
   return costs;

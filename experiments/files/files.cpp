@@ -213,14 +213,14 @@ void CsvRows::refuse_equal_times(const std::string& other_remedy) const {
          other_remedy);
 }
 
-double CsvRows::time(Order order) {
+double CsvRows::time(Order order, const std::string& other_remedy) {
   const double before = last_time_;
   last_time_ = number(0, "time");
   if (last_time_ > before || (last_time_ == before && order == Order::not_earlier))
     return last_time_;
-  if (last_time_ == before) refuse_equal_times("leave one of the rows out");
+  if (last_time_ == before) refuse_equal_times("leave one of the rows out" + other_remedy);
   refuse("time " + to_text(last_time_) + " s comes after " + to_text(before) +
-         " s (rows go forward in time): sort them");
+         " s (rows go forward in time): sort them" + other_remedy);
 }
 
 }  // namespace montecarta::experiments

@@ -57,8 +57,9 @@ class CsvRows {
   double number(std::size_t i, const char* noun) const;
   /// The required order of a row's time and that of the row before.
   enum class Order { later, not_earlier };
-  /// Field 0 as a time [s]. Throws StudyError if it is not in order.
-  double time(Order order = Order::later);
+  /// Field 0 as a time [s]. Throws StudyError if it is not in order; `other_remedy` is the end of
+  /// the error, for instance a script that repairs the file.
+  double time(Order order = Order::later, const std::string& other_remedy = {});
   /// Refuses a row whose time equals that of the row before. The error counts the digits of the
   /// time if they are few, and ends with `other_remedy`.
   [[noreturn]] void refuse_equal_times(const std::string& other_remedy) const;

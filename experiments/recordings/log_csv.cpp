@@ -41,6 +41,10 @@ const std::array<std::string, 6> kReferenceHeaders = {
     "cov_x_heading_m_rad,cov_y_heading_m_rad,var_heading_rad2"};
 constexpr std::size_t kWithSigmas = 2, kWithCovariance = 4;
 
+/// The end of an error that names the script for logs as robots write them.
+const std::string kOrRepair =
+    ", or repair the log (python3 experiments/convert/repair_log.py FOLDER -o NEW_FOLDER)";
+
 /// Makes a header of the time and then of these controls or these components of a detection.
 std::string header_of(std::span<const Quantity> quantities) {
   std::string header = "time_s";
@@ -70,7 +74,7 @@ double limited(const CsvRows& rows, std::size_t field, const char* noun, double 
 double time_in(CsvRows& rows, CsvRows::Order order = CsvRows::Order::later) {
   constexpr double kLatestTime = 1e10;  // larger numbers are probably nanoseconds
   limited(rows, 0, "time", kLatestTime, "seconds, at most 1e10");
-  return rows.time(order);
+  return rows.time(order, kOrRepair);
 }
 
 Eigen::Vector2d point_in(const CsvRows& rows, std::size_t first) {
@@ -156,7 +160,7 @@ void check_identity(const CsvRows& rows, std::int32_t identity, std::size_t know
   if (identity < 0) return;
   const std::string name = "identity " + std::to_string(identity);
   if (!seen.insert(identity).second)
-    rows.refuse(name + " twice (a scan sees a landmark once): correct one of the two");
+    rows.refuse(name + " twice (a scan sees a landmark once): correct one of the two" + kOrRepair);
   if (known == 0 || static_cast<std::size_t>(identity) < known) return;
   rows.refuse(name + " of " + std::to_string(known) +
               " landmarks (they count from 0): give all landmarks, or none");

@@ -249,6 +249,11 @@ SeveralDrives::SeveralDrives(std::vector<RecordedDrive> drives) : drives_(std::m
   const auto scans = [](const RecordedDrive& drive) { return drive.itinerary().scans(); };
   itinerary_ = std::ranges::max_element(drives_, {}, scans)->itinerary();
   itinerary_.references.clear();
+  const auto steps = [](const RecordedDrive& drive) { return drive.itinerary().steps(); };
+  const Itinerary& longest = std::ranges::max_element(drives_, {}, steps)->itinerary();
+  for (std::size_t k = itinerary_.steps(); k < longest.steps(); ++k) {
+    itinerary_.step_time.push_back(std::max(itinerary_.step_time.back(), longest.step_time[k]));
+  }
   for (std::size_t k = 1; k < drives_.size(); ++k)
     require_alike(drives_.front().itinerary(), drives_[k].itinerary(), k);
 }

@@ -70,7 +70,9 @@ class SeveralDrives final : public DriveSource {
 
  private:
   std::vector<RecordedDrive> drives_;
-  Itinerary itinerary_;  ///< itinerary of the drive with the most scans, without references
+  /// The itinerary of the drive with the most scans, without references. Its steps are continued to
+  /// the number of steps of the drive with the most steps.
+  Itinerary itinerary_;
 };
 
 /// Whether a log contains the identities of its detections.

@@ -115,6 +115,14 @@ Capabilities capabilities_of(const FilterKind& filter, const FilterSetup& setup)
   return reports;
 }
 
+/// Returns whether a filter uses no random numbers: those of this program without particles. Nobody
+/// knows it of programs and of filters from another source tree.
+bool is_deterministic(const FilterKind& filter) {
+  const auto added = filters::added_filter_kinds();
+  return !filter.reports.particles && filter.name != "external" &&
+         std::ranges::count(added, filter.name, &FilterKind::name) == 0;
+}
+
 Cell cell_of(const CellSpec& spec, const Study& study, ExternalPrograms programs) {
   const FilterSetup setup = setup_of(spec, study);
   const FilterKind& filter = *spec.filter;
@@ -124,6 +132,7 @@ Cell cell_of(const CellSpec& spec, const Study& study, ExternalPrograms programs
           .particles = particles_of(spec),
           .reports = capabilities_of(filter, setup),
           .landmarks = map_rows_of(setup, study.settings),
+          .is_deterministic = is_deterministic(filter),
           .settings = spec.options,
           .make_filter = maker_of(spec, setup, programs)};
 }

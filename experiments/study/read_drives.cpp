@@ -44,21 +44,13 @@ std::vector<std::string> paths_in(const Settings& settings, const fs::path& stud
                    "path = monday, tuesday");
 }
 
-/// Throws StudyError unless there is one run for each drive, and poses are stored at scans only,
-/// because drives differ in their steps.
+/// Throws StudyError unless there is one run for each drive.
 void require_runs_to_fit(const Settings& settings, std::size_t drives) {
-  if (drives < 2) return;
-  if (settings.count("study", "runs") != drives) {
-    throw StudyError(
-        settings.place("study", "runs") + ": runs = " + settings.text("study", "runs") + " with " +
-        std::to_string(drives) +
-        " drives in scenario.path (each drive is one run): set runs = " + std::to_string(drives));
-  }
-  if (settings.text("record", "rate") == "scan") return;
-  throw StudyError(settings.place("record", "rate") +
-                   ": rate = " + settings.text("record", "rate") +
-                   " with several drives (their control steps are not the same, and rows are "
-                   "scans): set rate = scan");
+  if (drives < 2 || settings.count("study", "runs") == drives) return;
+  throw StudyError(
+      settings.place("study", "runs") + ": runs = " + settings.text("study", "runs") + " with " +
+      std::to_string(drives) +
+      " drives in scenario.path (each drive is one run): set runs = " + std::to_string(drives));
 }
 
 /// The fingerprint of each drive as stored in the study; empty texts if it has none.

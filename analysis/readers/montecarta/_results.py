@@ -119,7 +119,7 @@ class Results:
             Every dataset of the cell, `truth` and `truth_*` where true paths are stored,
             `scan_row`; coordinates run, time [s], scan [s], component (x [m], y [m], heading
             [rad]). Runs that are drives of their own have no common times: without the coordinates
-            time and scan. `attrs` holds the filter and its settings.
+            time and scan, and without scan_row where poses are stored between scans. `attrs` holds the filter and its settings.
 
         Raises
         ------
@@ -132,7 +132,9 @@ class Results:
             raise KeyError(f"{self.path} has no cell {label!r}: it has {', '.join(self.labels)}")
         root = xarray.open_dataset(self.path, engine="netcdf4")
         cell = xarray.open_dataset(self.path, engine="netcdf4", group="cells/" + label)
-        cell = cell.assign(scan_row=root.scan_row).assign_coords(run=root.run)
+        cell = cell.assign_coords(run=root.run)
+        if not self._has("scenario/drives/drive_00000/step_time"):
+            cell = cell.assign(scan_row=root.scan_row)
         if self._has("scenario/drives"):
             cell = cell.drop_vars(["time", "scan"], errors="ignore")
         else:
@@ -245,7 +247,16 @@ def at_scans(cell: xarray.Dataset) -> xarray.Dataset:
     -------
     xarray.Dataset
         The same, in which what is stored by time has the axis `scan` [s] instead.
+
+    Raises
+    ------
+    ValueError
+        If each run has its scans at rows of its own.
     """
+    if "scan_row" not in cell:
+        raise ValueError("each run has its scans at rows of its own (recorded drives with "
+                         "record.rate = control): take the rows scan_step of "
+                         "arrays(path)[\"scenario\"][\"drives\"]")
     rows = cell.scan_row.values
     cell = cell.isel(run=np.flatnonzero(cell.status.values == 1))
 

@@ -3,6 +3,7 @@
 
 #include "analysis/render/page/html.hpp"
 #include "analysis/render/tables/files.hpp"
+#include "analysis/study/drive_facts.hpp"
 #include "analysis/study/frame.hpp"
 #include "analysis/study/verdict_table.hpp"
 #include "engine/errors.hpp"
@@ -267,8 +268,9 @@ std::string studied_sentence(const StudyAnalysis& study) {
 Section title_section(const StudyAnalysis& study) {
   Section section{"title", ""};
   section.add_html(html_heading(1, study.title.empty() ? study.study_name : study.title) +
-                   html_paragraphs({studied_sentence(study)}) + "<p class=\"soft\">" +
-                   title_line(study) + "</p>\n");
+                   html_paragraphs({studied_sentence(study)}) +
+                   html_paragraphs(drive_facts(study)) + "<p class=\"soft\">" + title_line(study) +
+                   "</p>\n");
   return section;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/render/tables/terminal.hpp"
 
+#include "analysis/study/drive_facts.hpp"
 #include "analysis/study/imported_notes.hpp"
 #include "analysis/study/metric.hpp"
 #include "analysis/study/reference_sums.hpp"
@@ -63,6 +64,13 @@ void print_section_tables(std::ostream& out, const Section& section, std::size_t
   }
 }
 
+/// Prints what happened on a recorded drive.
+void print_facts(std::ostream& out, const StudyAnalysis& study, std::size_t width) {
+  const std::vector<std::string> facts = drive_facts(study);
+  for (const std::string& fact : facts) out << engine::wrapped(fact, width, 2);
+  if (!facts.empty()) out << '\n';
+}
+
 /// Prints the subject of the study, the failed runs, and the verdict on each cell in a sentence.
 void print_head(std::ostream& out, const StudyAnalysis& study, std::size_t width) {
   const std::string runs =
@@ -75,6 +83,7 @@ void print_head(std::ostream& out, const StudyAnalysis& study, std::size_t width
       << '\n';
   if (study.has_failures()) print_failures(out, study, width);
   if (!study.has_truth) out << engine::wrapped(no_truth_sentence(study), width) << '\n';
+  print_facts(out, study, width);
   print_sentences(out, study, width);
 }
 

@@ -80,6 +80,13 @@ TEST(ReferenceTable, ComparesAsItStandsWhereTheErrorsOfTheReferenceAreKnown) {
   EXPECT_EQ(baseline_table(shifted_study(false)).rows[1][3], "better in no run");
 }
 
+TEST(BaselineTable, PrintsEqualResultsAsTies) {
+  StudyAnalysis study = shifted_study(true);
+  study.cells[1].findings.put(study.cells[0].get<ReferenceAnalyses>());
+  EXPECT_THAT(baseline_table(study).rows[1],
+              ElementsAre("smoother", "0 of 1", "0 of 1, 1 tie", "equal in every run"));
+}
+
 TEST(ReferenceTable, HasOneRowACellAndReference) {
   const TextTable table = reference_table(recorded_study());
   ASSERT_EQ(table.rows.size(), 8u);

@@ -134,8 +134,6 @@ ReferenceAnalysis four_runs() {
 TEST(ReferenceAnalysis, CountsRunsThatLoseTheMapAndGivesMeanMiddleAndExtremes) {
   const ReferenceAnalysis cell = four_runs();
   EXPECT_EQ(cell.lost(), 1u);  // ten metres are not yet lost
-  EXPECT_EQ(cell.better_than(2.0, &ReferenceScores::aligned_rms), 1u);
-  EXPECT_EQ(cell.better_than(2.1, &ReferenceScores::aligned_rms), 2u);
   const Spread rms = four_runs().over_runs(&ReferenceScores::aligned_rms);
   EXPECT_DOUBLE_EQ(rms.summary.mean, 6.0);
   EXPECT_NEAR(rms.summary.standard_error(), std::sqrt((25.0 + 16.0 + 16.0 + 25.0) / 3.0 / 4.0),
@@ -143,6 +141,35 @@ TEST(ReferenceAnalysis, CountsRunsThatLoseTheMapAndGivesMeanMiddleAndExtremes) {
   EXPECT_DOUBLE_EQ(rms.median, 6.0);
   EXPECT_EQ(rms.least, 1.0);
   EXPECT_EQ(rms.greatest, 11.0);
+}
+
+/// A cell whose runs, with these numbers, have these raw RMS [m].
+CellAnalysis cell_with(const std::vector<std::uint64_t>& numbers, const std::vector<double>& rms) {
+  CellAnalysis cell;
+  cell.runs = numbers;
+  ReferenceAnalysis analysis;
+  for (const double one : rms) analysis.runs.push_back(run_with(1.0, {one}).scores);
+  cell.findings.put(ReferenceAnalyses{analysis});
+  return cell;
+}
+
+TEST(RunsAgainst, CompareWithTheMeanOnOneDriveAndRunByRunOnDrivesOfTheirOwn) {
+  const auto against = [](const CellAnalysis& cell, const CellAnalysis& baseline,
+                          DrivesOfRuns drives) {
+    const RunsAgainst found = runs_against(cell, baseline, &ReferenceScores::rms, drives);
+    return std::pair(found.better, found.equal);
+  };
+  const CellAnalysis baseline = cell_with({0, 1, 2}, {0.1, 0.7, 0.1});  // the mean rounds
+  const CellAnalysis same = cell_with({0, 1, 2}, {0.1, 0.7, 0.1 * (1.0 + 1e-15)});
+  EXPECT_EQ(against(same, baseline, DrivesOfRuns::own), std::pair(0UL, 3UL));
+  EXPECT_EQ(against(same, baseline, DrivesOfRuns::same), std::pair(2UL, 0UL));
+  const CellAnalysis other = cell_with({0, 1, 2}, {0.05, 0.8, 0.1});
+  EXPECT_EQ(against(other, baseline, DrivesOfRuns::own), std::pair(1UL, 1UL));
+  const CellAnalysis failed =
+      cell_with({0, 2}, {0.1, 0.2});  // run 1 is better than one that failed
+  EXPECT_EQ(against(other, failed, DrivesOfRuns::own), std::pair(3UL, 0UL));
+  const CellAnalysis equal = cell_with({0, 1, 2}, {0.7, 0.7, 0.7});
+  EXPECT_EQ(against(equal, equal, DrivesOfRuns::same), std::pair(0UL, 3UL));
 }
 
 TEST(ReferenceAnalysis, IsOfTheRunsThatHaveFixes) {

@@ -56,9 +56,10 @@ class DriveOfTenMinutes : public ::testing::Test {
     return rows;
   }
 
-  DriveScores scores(const RunRows& rows) const {
+  DriveScores scores(RunRows rows) const {
     const PathAtFixes fixes(reference_, times_, {});
-    return drive_scores(fixes, times_, rows, 0, 0.95);
+    rows.path.spread = rows.spread;
+    return drive_scores(fixes, {}, rows, 0, 0.95);
   }
   DriveConsistency judged(const RunRows& rows, double within = kUsualMargin) const {
     const DriveScores one = scores(rows);
@@ -126,11 +127,10 @@ TEST_F(DriveOfTenMinutes, ItsTableHasARowForACellAndSaysWhatToConsider) {
   reference_.position[0] = {0.0, 0.0};  // where the drive starts
   RunCriteria criteria = criteria_of_scans(times_);
   criteria.references.emplace_back(reference_, times_, Pose{});
-  criteria.judged_fixes.emplace_back(reference_, times_, Pose{});
   CellSums sums(criteria);
   MeasuredRun measured;
   measured.rows = run(5.0, 0.3);
-  measured.rows.path = measured.rows.spread.mean;
+  measured.rows.path.spread = measured.rows.spread;
   measured.measure(criteria, 0);
   sums.add(measured);
   StudyAnalysis study;
@@ -140,7 +140,7 @@ TEST_F(DriveOfTenMinutes, ItsTableHasARowForACellAndSaysWhatToConsider) {
                        .times = times_,
                        .has_heading = true,
                        .has_errors = true,
-                       .has_start = criteria.judged_fixes[0].has_start()}};
+                       .has_start = criteria.references[0].has_start()}};
   study.cells.emplace_back();
   study.cells.front().label = "mine";
   study.cells.front().filter = "external";
@@ -158,6 +158,27 @@ TEST_F(DriveOfTenMinutes, ItsTableHasARowForACellAndSaysWhatToConsider) {
   EXPECT_EQ(warnings->table.rows.size(), 2U) << "it starts at a fix, and its author is another";
   study.references.front().has_errors = false;
   EXPECT_THAT(reported_table(study, "drive").rows, IsEmpty());
+}
+
+TEST_F(DriveOfTenMinutes, AFewGrossOutliersAreCountedAndTheRatioIsSaidWithoutThem) {
+  EXPECT_EQ(judged(run(1.0, 0.3)).mean.outliers, 0U);
+  const double right = judged(run(1.0, 0.3)).mean.leads().mean;
+  EXPECT_DOUBLE_EQ(judged(run(1.0, 0.3)).mean.ratio_without_outliers, right);
+  for (const std::size_t fix : {10U, 200U, 201U, 500U}) reference_.position[fix].x() += 300.0;
+  const DriveConsistency found = judged(run(1.0, 0.3));
+  EXPECT_EQ(found.mean.outliers, 4U);
+  EXPECT_GT(found.mean.leads().mean, 50.0 * right);
+  EXPECT_NEAR(found.mean.ratio_without_outliers, right, 0.02);
+  EXPECT_EQ(found.mean.fixes, 600U) << "the verdict uses all of them";
+}
+
+TEST(DriveVerdict, PrintsTheTimeThatItNeedsLikeEveryDuration) {
+  DriveConsistency drive;
+  drive.answer = Answer::undecided;
+  drive.minutes = 5.24e4;
+  EXPECT_EQ(in_words(drive), "this drive cannot tell: it would need at least 36.4 d");
+  drive.mean.blocks[0].effective_samples = 10.0;
+  EXPECT_EQ(in_words(drive), "this drive cannot tell: it would need 36.4 d");
 }
 
 // Runs that each met a drive of its own.
@@ -266,7 +287,9 @@ ReferencePath fix_at(double time, const Eigen::Vector3d& error, const Eigen::Vec
 FixErrors errors_of(const ReferencePath& path, const RunRows& rows, ErrorBlock block,
                     std::size_t particles = 0) {
   const PathAtFixes fixes(path, kScanTimes, {0.0, 0.0, 0.1});
-  return errors_at_fixes(fixes, kScanTimes, rows, particles, block);
+  RunRows with_path = rows;
+  with_path.path.spread = rows.spread;
+  return errors_at_fixes(fixes, {}, with_path, particles, block);
 }
 
 TEST(FixErrors, AreInUnitsOfBothCovariances) {
@@ -296,9 +319,9 @@ TEST(FixErrors, KnowTheWholeCovarianceAndTheShorterWayRound) {
 
 TEST(FixErrors, LeaveOutAndCountWhatCannotBeJudged) {
   const RunRows rows = rows_with({1.0, 1.0, 1.0});
-  const FixErrors gap = errors_of(fix_at(3.0, {1, 1, 1}, {1, 1, 1}), rows, ErrorBlock::pose);
-  EXPECT_THAT(gap.nees, IsEmpty());
-  EXPECT_EQ(gap.in_gaps, 1U);
+  const ReferencePath in_gap = fix_at(3.0, {1, 1, 1}, {1, 1, 1});
+  EXPECT_THAT(errors_of(in_gap, rows, ErrorBlock::pose).nees, IsEmpty());
+  EXPECT_EQ(drive_scores(PathAtFixes(in_gap, kScanTimes, {}), {}, rows, 0, 0.95).in_gaps, 1U);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const FixErrors undefined =
       errors_of(fix_at(1.5, {1, 1, 1}, {1, 1, 1}), rows_with({1.0, nan, 1.0}), ErrorBlock::pose);
@@ -338,6 +361,26 @@ TEST(FixErrors, OfDrawnPosesGoFromTheOneScaleToTheOther) {
       << "five draws cannot be judged";
 }
 
+// Between scans particles keep their weights, so that the last scan says how many draws they are.
+TEST(FixErrors, BetweenScansUseTheDrawsOfTheLastScan) {
+  RunRows rows = rows_with({1.0, 3.0, 1.0});
+  rows.path.spread = rows.spread;
+  rows.ess = {20.0};
+  const std::vector<std::uint32_t> scan_rows = {1};  // rows 0 and 2 are steps without a scan
+  const auto nees_at = [&](double time, std::size_t particles) {
+    const ReferencePath path = fix_at(time, {2.0, 2.0, 1.0}, {1e-20, 1e-20, 1e-20});
+    return errors_at_fixes(PathAtFixes(path, kScanTimes, {}), scan_rows, rows, particles,
+                           ErrorBlock::pose)
+        .nees[0];
+  };
+  const Eigen::Vector3d error(2.0, 2.0, 1.0);
+  Eigen::Matrix3d P;
+  P << 1.0, 0.0, 0.0, 0.0, 1.0, 0.2, 0.0, 0.2, 0.5;
+  const double nees_of_error = nees<3>(error, P).value;
+  EXPECT_NEAR(nees_at(1.0, 200), SamplerScale(3)(nees_of_error, effective_draws(200, 200.0)), 1e-6);
+  EXPECT_NEAR(nees_at(4.0, 200), SamplerScale(3)(nees_of_error, effective_draws(200, 20.0)), 1e-6);
+}
+
 ReferencePath reference_at(const std::vector<double>& times) {
   ReferencePath path{"gps", times, {}, {}};
   for (const double time : times) {
@@ -347,22 +390,41 @@ ReferencePath reference_at(const std::vector<double>& times) {
   return path;
 }
 
-const std::vector<double> kFixTimes = {1.0, 2.0, 4.0};
+const std::vector<double> kRowTimes = {1.0, 2.0, 3.0};
 constexpr Pose kStart{-10.0, 0.0, 0.0};
 const std::vector<double> kPathRows = {0.0, 10.0, 0.5,  // row by row
                                        2.0, 10.0, 1.0,  //
                                        6.0, 30.0, 2.0};
 
 TEST(PathAtFixes, UsesOnlyFixesWithinTheDrive) {
-  const PathAtFixes fixes(reference_at({-0.1, 0.0, 3.0, 4.0, 4.1}), kFixTimes, kStart);
-  EXPECT_THAT(fixes.times(), ElementsAre(0.0, 3.0, 4.0));
-  EXPECT_EQ(fixes.positions()[1], Eigen::Vector2d(3.0, 0.0));
+  const PathAtFixes fixes(reference_at({-0.1, 0.0, 2.5, 3.0, 3.1}), kRowTimes, kStart);
+  EXPECT_THAT(fixes.times(), ElementsAre(0.0, 2.5, 3.0));
+  EXPECT_EQ(fixes.positions()[1], Eigen::Vector2d(2.5, 0.0));
   EXPECT_EQ(fixes.headings().size(), 3u);
   EXPECT_EQ(fixes.interpolate(kPathRows).size(), 3u);
+  EXPECT_EQ(fixes.in_gaps(), 0U);
+}
+
+// No number counts what is interpolated across a gap, but a fix beside a gap is judged.
+TEST(PathAtFixes, UsesFixesInGapsOnlyWhereAPoseIsStored) {
+  const std::vector<double> times = {2.0, 5.0, 6.0 + 5e-10, 9.0};
+  const PathAtFixes fixes(reference_at({0.0, 0.5, 2.0, 2.0005, 3.5, 4.998, 4.9995, 5.4, 6.1, 9.0}),
+                          times, kStart);
+  EXPECT_THAT(fixes.times(), ElementsAre(0.0, 2.0, 2.0005, 4.9995, 5.4, 9.0));
+  EXPECT_EQ(fixes.in_gaps(), 4U);
+}
+
+TEST(PathAtFixes, KnowWhetherTheDriveStartsAtAFixThatIsNotJudged) {
+  const std::vector<double> times = {5.0};
+  ReferencePath reference = reference_at({0.5, 2.0});
+  reference.position[0] = {kStart.x, kStart.y};
+  const PathAtFixes fixes(reference, times, kStart);
+  EXPECT_EQ(fixes.in_gaps(), 2U);
+  EXPECT_TRUE(fixes.has_start());
 }
 
 TEST(PathAtFixes, GoesLinearlyInTimeBetweenRowsAndFromTheStart) {
-  const PathAtFixes fixes(reference_at({0.0, 0.25, 1.0, 1.5, 3.0, 4.0}), kFixTimes, kStart);
+  const PathAtFixes fixes(reference_at({0.0, 0.25, 1.0, 1.5, 2.5, 3.0}), kRowTimes, kStart);
   const std::vector<Pose> poses = fixes.interpolate(kPathRows);
   const double x[] = {-10.0, -7.5, 0.0, 1.0, 4.0, 6.0};
   const double y[] = {0.0, 2.5, 10.0, 10.0, 20.0, 30.0};

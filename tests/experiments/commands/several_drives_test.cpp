@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Several recorded drives of one scenario, each a run, through every command.
+#include "analysis/study/study_analysis.hpp"
+#include "analysis/verdict/drive_verdict.hpp"
 #include "engine/records/result_file.hpp"
 #include "experiments/recordings/log_csv.hpp"
 #include "tests/doubles/matchers.hpp"
@@ -93,6 +95,39 @@ TEST_F(SeveralDrives, EachIsARunThatIsCompleteAndJudgedAsIndependent) {
   EXPECT_EQ(call({"check", "drives.ini"}).code, 0);
 }
 
+TEST_F(SeveralDrives, StorePosesBetweenScansAsEachDriveAlone) {
+  const std::vector<std::string> control = {"--set", "record.rate=control"};
+  ASSERT_EQ(run("out.h5", control).code, 0);
+  const ResultFile all(folder_ / "out.h5");
+  const auto scores_of = [](const ResultFile& file) {
+    return analysis::analyze(file).cells[0].get<analysis::DriveConsistencies>()[0].mean;
+  };
+  std::size_t run_number = 0, fixes = 0;
+  double mean = 0.0;
+  for (const std::string drive : {"long", "short", "middle"}) {
+    std::vector<std::string> alone = control;
+    alone.insert(alone.end(), {"--set", "scenario.path=" + drive, "--set", "study.runs=1"});
+    ASSERT_EQ(run(drive + ".h5", alone).code, 0);
+    const ResultFile one(folder_ / (drive + ".h5"));
+    EXPECT_EQ(all.description().drives[run_number].step_times, one.times());
+    std::vector<double> expected(3 * one.times().size()), found(3 * all.times().size());
+    one.read(one.cells()[0], "pose_mean", 0, std::span(expected));
+    all.read(all.cells()[0], "pose_mean", run_number++, std::span(found));
+    EXPECT_TRUE(found.size() == expected.size() || std::isnan(found[expected.size()]));
+    found.resize(expected.size());
+    EXPECT_EQ(found, expected) << drive;
+    const analysis::DriveScores judged = scores_of(one);
+    EXPECT_EQ(judged.in_gaps, 0U);
+    fixes += judged.fixes;
+    mean += judged.leads().mean / 3.0;
+  }
+  EXPECT_EQ(scores_of(all).fixes, fixes);
+  EXPECT_NEAR(scores_of(all).leads().mean, mean, 1e-12 * mean) << "STATISTICS (20.6)";
+  EXPECT_EQ(call({"verify", "out.h5", "--sample", "6", "--data", "long,short,middle"}).code, 0);
+  EXPECT_EQ(call({"report", "out.h5", "-o", "page"}).code, 0);
+  EXPECT_EQ(call({"check", "drives.ini", "--set", "record.rate=control"}).code, 0);
+}
+
 TEST_F(SeveralDrives, ShardsThreadsResumptionVerifyAndReplayGiveTheSameBits) {
   ASSERT_EQ(run("out.h5", {"--threads", "1"}).code, 0);
   ASSERT_EQ(run("a.h5", {"--runs", "0:1"}).code, 0);
@@ -124,7 +159,6 @@ TEST_F(SeveralDrives, SayWhatDoesNotFitTogether) {
     expect_refused({"run", "drives.ini", "-o", "x.h5", "--quiet", "--set", setting}, words);
   };
   refused("study.runs=2", "set runs = 3");
-  refused("record.rate=control", "set rate = scan");
   refused("scenario.path=long, short, long", "long holds the drive of long again");
   refused("scenario.path=long,,short", "folders are separated by commas");
   std::filesystem::rename(folder_ / "short/reference.csv", folder_ / "short/reference_gps.csv");
