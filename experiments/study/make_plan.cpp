@@ -5,6 +5,7 @@
 #include "engine/random/stream.hpp"
 #include "engine/records/columns.hpp"
 #include "experiments/study/enough_runs.hpp"
+#include "experiments/study/known_map.hpp"
 #include "experiments/study/make_drives.hpp"
 #include "experiments/study/vehicle_and_sensor.hpp"
 #include "experiments/text/words.hpp"
@@ -12,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace montecarta::experiments {
 namespace {
@@ -50,6 +52,10 @@ AssociationSettings association_of(const Settings& s) {
                      ": new_gate_sigma is below gate_sigma (a detection would be old "
                      "and new at once): enlarge new_gate_sigma");
   }
+  if (map_is_known(s)) {  // a known map is complete
+    association.new_gate = std::numeric_limits<double>::infinity();
+    association.most_landmarks = std::numeric_limits<std::size_t>::max();
+  }
   return association;
 }
 
@@ -73,7 +79,7 @@ ColumnSelection columns_of(const Settings& s) {
 /// those is unknown.
 std::size_t map_rows_of(const FilterSetup& setup, const Settings& s) {
   const std::uint64_t asked = s.count("record", "map_rows");
-  if (setup.association.kind == Association::known) return setup.landmarks;
+  if (setup.association.kind == Association::known || setup.map_is_known) return setup.landmarks;
   if (asked > 0) return asked;
   return s.scenario_kind() == "simulated" ? setup.landmarks : setup.association.most_landmarks;
 }
@@ -102,16 +108,22 @@ std::function<std::unique_ptr<SlamFilter>()> maker_of(const CellSpec& spec,
 
 FilterSetup setup_of(const CellSpec& spec, const Study& study) {
   std::map<std::string, std::string, std::less<>> values(spec.options.begin(), spec.options.end());
+  const bool is_known = map_is_known(study.settings);
   return {.belief = belief_of(study.settings, spec),
           .association = association_of(study.settings),
           .options = FilterOptions(std::move(values)),
-          .landmarks = identities_of(study)};
+          .landmarks = std::max(identities_of(study), is_known ? landmarks_of(study).size() : 0),
+          .map_is_known = is_known};
 }
 
-/// The capabilities that the filter has with this setup.
-Capabilities capabilities_of(const FilterKind& filter, const FilterSetup& setup) {
+/// The capabilities that the filter has in this study. A map that is known exactly is no estimate.
+Capabilities capabilities_of(const CellSpec& spec, const Study& study) {
+  const FilterKind& filter = *spec.filter;
   Capabilities reports = filter.reports;
-  if (filter.restrict_reports) filter.restrict_reports(setup, reports);
+  if (filter.restrict_reports) filter.restrict_reports(setup_of(spec, study), reports);
+  const bool is_exact =
+      map_is_known(study.settings) && prior_deviations_of(study.settings, "belief").landmark == 0.0;
+  if (is_exact) reports.map = reports.joint = false;
   return reports;
 }
 
@@ -122,7 +134,7 @@ Cell cell_of(const CellSpec& spec, const Study& study, ExternalPrograms programs
           .filter = filter.name,
           .long_name = filter.long_name + (spec.distinction.empty() ? "" : ", " + spec.distinction),
           .particles = particles_of(spec),
-          .reports = capabilities_of(filter, setup),
+          .reports = capabilities_of(spec, study),
           .landmarks = map_rows_of(setup, study.settings),
           .settings = spec.options,
           .make_filter = maker_of(spec, setup, programs)};
@@ -131,9 +143,9 @@ Cell cell_of(const CellSpec& spec, const Study& study, ExternalPrograms programs
 /// The settings of the scenario, then those of other sections with the name of the section in
 /// front.
 std::vector<std::pair<std::string, std::string>> scenario_facts(const Settings& settings) {
-  auto facts = settings.section("scenario");
+  auto facts = stated_settings(settings, "scenario");
   for (const char* section : {"belief", "association"}) {
-    for (const auto& [key, value] : settings.section(section))
+    for (const auto& [key, value] : stated_settings(settings, section))
       facts.emplace_back(std::string(section) + "." + key, value);
   }
   return facts;
@@ -202,6 +214,10 @@ RunRange parse_shard(const std::string& text, std::uint64_t runs, std::uint64_t 
 
 std::string objection_to_joint(const Study& study) {
   const auto has_joint = [](const CellSpec& cell) { return cell.filter->reports.joint; };
+  if (map_is_known(study.settings) &&
+      prior_deviations_of(study.settings, "belief").landmark == 0.0) {
+    return "(a map that is known exactly has no covariance): take joint out, or give map_sigma_m";
+  }
   if (std::ranges::none_of(study.cells, has_joint)) {
     std::vector<std::string> names;
     for (const FilterKind& kind : filter_kinds()) {
@@ -220,7 +236,7 @@ std::string objection_to_joint(const Study& study) {
 
 std::string objection_to_observability(const Study& study) {
   const auto reports_it = [&](const CellSpec& cell) {
-    const Capabilities reports = capabilities_of(*cell.filter, setup_of(cell, study));
+    const Capabilities reports = capabilities_of(cell, study);
     return std::ranges::count(reports.own_columns, "observability", &OwnColumn::group) > 0;
   };
   if (std::ranges::any_of(study.cells, reports_it)) return {};

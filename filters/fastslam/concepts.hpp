@@ -78,8 +78,9 @@ concept Associator = requires(A a, const A decided, const StepContext& context, 
                               typename A::Maps& maps,
                               const std::vector<PoseGaussian<Real>>& predicted,
                               const Weights<Real>& weights, std::size_t block, std::size_t k) {
-  // Begins a run: no landmark is known.
+  // Begins a run: no landmark is known. Then gives every particle the known ones.
   a.start();
+  a.add_known(context, /*map*/ std::span<const LandmarkEstimate>(), maps);
   // Associates a scan for all particles, by their `predicted` poses {block}.
   a.associate(context, scan, maps, predicted);
   { decided.matched_nothing() } -> Is<bool>;

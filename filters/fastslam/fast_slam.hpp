@@ -29,12 +29,17 @@ class FastSlam final : public SlamFilter {
         maps_(settings.particles) {}
 
   void start(const Pose& start) override {
-    now_ = StepContext::before_all_steps();
+    start_from(StepContext::before_all_steps(), {.pose = {start}});
+  }
+  /// Draws the particles from the prior of the pose. All have the known map.
+  void start_from(const StepContext& context, const Prior& prior) override {
+    now_ = context;
     population_.start();
     maps_.clear();
     association_.start();
     if constexpr (KeepsGaussians<Proposal>) proposal_.start();
-    std::fill(poses_.begin(), poses_.end(), BasicPose<Real>{start.x, start.y, start.heading});
+    draw_start(context, prior.pose);
+    association_.add_known(context, prior.map, maps_);
   }
 
   void predict(const StepContext& context, const Control& control, double duration) override {
@@ -70,6 +75,18 @@ class FastSlam final : public SlamFilter {
   }
 
  private:
+  void draw_start(const StepContext& context, const PoseMoments& start) {
+    const BasicPose<Real> mean{start.mean.x, start.mean.y, start.mean.heading};
+    std::ranges::fill(poses_, mean);
+    if (start.covariance.isZero(0.0)) return;
+    const PoseFactor<Real> factor(
+        PoseGaussian<Real>{mean, in_every_lane<Real>(symmetric_of(start.covariance))});
+    for (std::size_t b = 0; b < poses_.size(); ++b) {
+      const auto first = static_cast<std::uint32_t>(b * kLanesOf<Real>);
+      poses_[b] = draw_from(factor, context.identity(Draw::start_sample, first));
+    }
+  }
+
   const Weights<Real>& weights() const { return population_.weights(); }
 
   void predict_poses(const StepContext& context) {

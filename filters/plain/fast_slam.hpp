@@ -23,10 +23,19 @@ class FastSlam : public SlamFilter {
                                                                    : Resampling::stratified) {}
 
   void start(const Pose& start) override {
-    Particle first;
-    first.pose = first.refined_pose = to_vector(start);
-    particles_.assign(setup_.options.integer("particles"), first);
-    for (Particle& p : particles_) p.log_weight = -std::log(size());
+    start_from(StepContext::before_all_steps(), {.pose = {start}});
+  }
+  /// Draws the particles from the prior of the pose. All have the known map.
+  void start_from(const StepContext& context, const Prior& prior) override {
+    const Vector<3> mean = to_vector(prior.pose.mean);
+    const Matrix<3> root = root_along(mean(2), prior.pose.covariance);
+    particles_.assign(setup_.options.integer("particles"), {});
+    for (std::uint32_t i = 0; i < particles_.size(); ++i) {
+      Particle& p = particles_[i];
+      p.pose = p.refined_pose = drawn_from(mean, root, context.stream(Draw::start_sample, i));
+      p.log_weight = -std::log(size());
+      p.map = known_map(prior.map);
+    }
     forget_ancestors();
     report_ = {};
     is_after_scan_ = false;
