@@ -131,8 +131,8 @@ concept PoseProposal = requires(P p, const P now, const StepContext& context, st
 
 /// A proposal that keeps a Gaussian for each particle between its steps.
 template <class P>
-concept KeepsGaussians = requires(P p) {
-  p.start();       // begins a run
+concept KeepsGaussians = requires(P p, const PoseMoments& start) {
+  p.start(start);  // begins a run: the Gaussian of each particle is that of the start
   p.end_scan();    // all poses of the scan have been drawn
   p.begin_step();  // the particles of the last scan have been resampled, where that was due
 };

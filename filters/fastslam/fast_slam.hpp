@@ -31,14 +31,20 @@ class FastSlam final : public SlamFilter {
   void start(const Pose& start) override {
     start_from(StepContext::before_all_steps(), {.pose = {start}});
   }
-  /// Draws the particles from the prior of the pose. All have the known map.
+  /// Particles begin with the prior of the pose as their Gaussian or, if they have none, are drawn
+  /// from it. All have the known map.
   void start_from(const StepContext& context, const Prior& prior) override {
     now_ = context;
     population_.start();
     maps_.clear();
     association_.start();
-    if constexpr (KeepsGaussians<Proposal>) proposal_.start();
-    draw_start(context, prior.pose);
+    const Pose& start = prior.pose.mean;
+    std::ranges::fill(poses_, BasicPose<Real>{start.x, start.y, start.heading});
+    if constexpr (KeepsGaussians<Proposal>) {
+      proposal_.start(prior.pose);
+    } else if (!prior.pose.covariance.isZero(0.0)) {
+      draw_start(context, prior.pose.covariance);
+    }
     association_.add_known(context, prior.map, maps_);
   }
 
@@ -75,12 +81,9 @@ class FastSlam final : public SlamFilter {
   }
 
  private:
-  void draw_start(const StepContext& context, const PoseMoments& start) {
-    const BasicPose<Real> mean{start.mean.x, start.mean.y, start.mean.heading};
-    std::ranges::fill(poses_, mean);
-    if (start.covariance.isZero(0.0)) return;
+  void draw_start(const StepContext& context, const Eigen::Matrix3d& covariance) {
     const PoseFactor<Real> factor(
-        PoseGaussian<Real>{mean, in_every_lane<Real>(symmetric_of(start.covariance))});
+        PoseGaussian<Real>{poses_[0], in_every_lane<Real>(symmetric_of(covariance))});
     for (std::size_t b = 0; b < poses_.size(); ++b) {
       const auto first = static_cast<std::uint32_t>(b * kLanesOf<Real>);
       poses_[b] = draw_from(factor, context.identity(Draw::start_sample, first));
