@@ -56,6 +56,7 @@ MapCriteria map_criteria_of(const ResultFile& file) {
   criteria.known = !file.landmarks().empty();
   const auto world = simulated_world_of(file);
   if (world && !world->prior) criteria.view = world->view;  // a known map has all landmarks
+  criteria.is_exact = map_is_known(file) && says(file, "belief.map_sigma_m", "0");
   criteria.identities_known = says(file, "association.kind", "known");
   return criteria;
 }

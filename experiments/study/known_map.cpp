@@ -35,6 +35,10 @@ void refuse_deviations(const Settings& settings) {
 
 bool map_is_known(const Settings& settings) { return settings.text("belief", "map") == "known"; }
 
+bool map_is_exact(const Settings& settings) {
+  return map_is_known(settings) && prior_deviations_of(settings, "belief").landmark == 0.0;
+}
+
 PriorDeviations prior_deviations_of(const Settings& settings, const std::string& in) {
   if (!settings.has(in, "start_sigma_m")) return {};
   return {.position = settings.number(in, "start_sigma_m"),

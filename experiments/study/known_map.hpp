@@ -13,6 +13,8 @@ namespace montecarta::experiments {
 
 /// Returns whether the filters are given the map (belief.map = known).
 bool map_is_known(const Settings& settings);
+/// Returns whether the filters are given the map and assume that it has no errors.
+bool map_is_exact(const Settings& settings);
 /// Deviations of what the filters know at the start, of the section `in`: the true ones or those
 /// that the filters assume. A recorded drive has no true ones.
 PriorDeviations prior_deviations_of(const Settings& settings, const std::string& in);

@@ -74,10 +74,11 @@ ColumnSelection columns_of(const Settings& s) {
   return columns;
 }
 
-/// Number of rows of the map columns. With unknown association, landmarks are numbered in the order
-/// of initialisation and may outnumber those of the world, and for a recorded drive the number of
-/// those is unknown.
+/// Number of rows of the map columns. A map that is known exactly is no estimate and has none. With
+/// unknown association, landmarks are numbered in the order of initialisation and may outnumber
+/// those of the world, and for a recorded drive the number of those is unknown.
 std::size_t map_rows_of(const FilterSetup& setup, const Settings& s) {
+  if (map_is_exact(s)) return 0;
   const std::uint64_t asked = s.count("record", "map_rows");
   if (setup.association.kind == Association::known || setup.map_is_known) return setup.landmarks;
   if (asked > 0) return asked;
@@ -116,14 +117,12 @@ FilterSetup setup_of(const CellSpec& spec, const Study& study) {
           .map_is_known = is_known};
 }
 
-/// The capabilities that the filter has in this study. A map that is known exactly is no estimate.
+/// The capabilities that the filter has in this study.
 Capabilities capabilities_of(const CellSpec& spec, const Study& study) {
   const FilterKind& filter = *spec.filter;
   Capabilities reports = filter.reports;
   if (filter.restrict_reports) filter.restrict_reports(setup_of(spec, study), reports);
-  const bool is_exact =
-      map_is_known(study.settings) && prior_deviations_of(study.settings, "belief").landmark == 0.0;
-  if (is_exact) reports.map = reports.joint = false;
+  if (map_is_exact(study.settings)) reports.joint = false;
   return reports;
 }
 
@@ -214,8 +213,7 @@ RunRange parse_shard(const std::string& text, std::uint64_t runs, std::uint64_t 
 
 std::string objection_to_joint(const Study& study) {
   const auto has_joint = [](const CellSpec& cell) { return cell.filter->reports.joint; };
-  if (map_is_known(study.settings) &&
-      prior_deviations_of(study.settings, "belief").landmark == 0.0) {
+  if (map_is_exact(study.settings)) {
     return "(a map that is known exactly has no covariance): take joint out, or give map_sigma_m";
   }
   if (std::ranges::none_of(study.cells, has_joint)) {
