@@ -41,7 +41,7 @@ class MapOverRuns final : public MergedSums<MapOverRuns> {
   explicit MapOverRuns(const RunCriteria& criteria) : criteria_(&criteria) {}
   void add(const MeasuredRun& run) override { map_.add(run.map); }
   void put(CellAnalysis& cell) override {
-    cell.findings.put(map_.result(criteria_->level, criteria_->map.known));
+    cell.findings.put(map_.result(criteria_->level, criteria_->map));
   }
   static constexpr auto parts() { return std::tuple(added(&MapOverRuns::map_)); }
 

@@ -131,6 +131,7 @@ CramerRaoBound squared_bound(const SimulatedWorld& world, const TruePath& path) 
   const Eigen::Vector2d observation_variance = world.sigma_observation.cwiseAbs2() / world.detected;
   JointBound joint(path.landmarks.size(), world.vehicle, world.control_noise, observation_variance,
                    world.sensor);
+  if (world.prior) joint.start_from(*world.prior);
   CramerRaoBound bound;
   std::size_t row = 0;
   for (const std::uint32_t scan_row : path.scan_rows) {
@@ -142,7 +143,8 @@ CramerRaoBound squared_bound(const SimulatedWorld& world, const TruePath& path) 
     bound.position.push_back(joint.pose()(0, 0) + joint.pose()(1, 1));
     bound.heading.push_back(joint.pose()(2, 2));
   }
-  bound.map = joint.mean_map_variance();
+  const bool is_exact = world.prior && world.prior->landmark == 0.0;
+  if (!is_exact) bound.map = joint.mean_map_variance();
   bound.runs = 1;
   return bound;
 }

@@ -54,7 +54,9 @@ MapCriteria map_criteria_of(const ResultFile& file) {
   MapCriteria criteria;
   if (!file.has_truth()) return criteria;
   criteria.known = !file.landmarks().empty();
-  if (const auto world = simulated_world_of(file)) criteria.view = world->view;
+  const auto world = simulated_world_of(file);
+  if (world && !world->prior) criteria.view = world->view;  // a known map has all landmarks
+  criteria.is_exact = map_is_known(file) && says(file, "belief.map_sigma_m", "0");
   criteria.identities_known = says(file, "association.kind", "known");
   return criteria;
 }

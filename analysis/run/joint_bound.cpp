@@ -29,6 +29,16 @@ JointBound::JointBound(std::size_t landmarks, const Vehicle& vehicle,
   joint_.setZero(rows, rows);
 }
 
+void JointBound::start_from(const PriorDeviations& prior) {
+  pose_ = prior.start_covariance();
+  joint_.topLeftCorner<3, 3>() = pose_;
+  for (Eigen::Index& row : row_) {
+    row = size_;
+    joint_.block<2, 2>(size_, size_) = prior.landmark_covariance();
+    size_ += 2;
+  }
+}
+
 /// P' = Fx P Fx' + Fu Q Fu'. The map is updated by finish_motion(): the product of Fx over several
 /// steps is again [1 0 a; 0 1 b; 0 0 1], where a and b are sums over the steps.
 Pose JointBound::move(const Pose& pose, const Control& control, double duration) {

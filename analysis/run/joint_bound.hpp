@@ -3,6 +3,7 @@
 
 #include "engine/core/drive.hpp"
 #include "engine/core/pose.hpp"
+#include "engine/core/prior.hpp"
 #include "filters/models/ackermann.hpp"
 #include "filters/models/range_bearing.hpp"
 #include "filters/models/sensor.hpp"
@@ -19,13 +20,16 @@ namespace montecarta::analysis {
 /// The Cramer-Rao bound on pose and landmarks together, as a covariance that is propagated along a
 /// known path: the recursion of a Kalman filter with all Jacobians at the truth. A landmark is
 /// unknown before its first observation; if one detection does not fix it, its standard deviation
-/// is a kilometre. The pose is known exactly at the start.
+/// is a kilometre. The pose is known exactly at the start, unless there is a prior.
 class JointBound {
  public:
   /// Makes room for all `landmarks`; nothing is allocated later. `control_noise` is that of the
   /// vehicle, `observation_variance` that of the components of the sensor.
   JointBound(std::size_t landmarks, const Vehicle& vehicle, const ControlNoise& control_noise,
              const Eigen::Vector2d& observation_variance, const Sensor& sensor = {});
+
+  /// Begins with a map and a start that are known with these deviations.
+  void start_from(const PriorDeviations& prior);
 
   /// Propagates the bound through one control step from the true `pose`; returns the pose after it.
   Pose move(const Pose& pose, const Control& control, double duration);

@@ -42,8 +42,9 @@ Gospa gospa(std::span<const Eigen::Vector2d> map, std::span<const Eigen::Vector2
 struct MapCriteria {
   bool known = false;  ///< whether the true positions are known
   /// Field of view of the sensor; without it all landmarks count as seen.
-  std::optional<FieldOfView> view;
+  std::optional<FieldOfView> view = {};
   bool identities_known = false;  ///< whether rows of a map are identities of the world
+  bool is_exact = false;  ///< whether the filters are given a map that they assume to be exact
 };
 
 /// Scores of one landmark in one run; NaN where it is not in the map.

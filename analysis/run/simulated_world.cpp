@@ -65,7 +65,21 @@ Eigen::Vector2d sigma_of(Facts& facts, const Sensor& sensor) {
   return sigma;
 }
 
+/// The prior of a known map. Files omit deviations of 0.
+PriorDeviations prior_of(const Facts& facts) {
+  const auto usual = [&](const char* key) {
+    return in_si(key, facts.optional_number(key).value_or(0.0));
+  };
+  return {.position = usual("start_sigma_m"),
+          .heading = usual("start_sigma_deg"),
+          .landmark = usual("map_sigma_m")};
+}
+
 }  // namespace
+
+bool map_is_known(const ResultFile& file) {
+  return Facts(file.scenario()).optional_text("belief.map") == "known";
+}
 
 std::optional<SimulatedWorld> simulated_world_of(const ResultFile& file) {
   Facts facts(file.scenario());
@@ -88,6 +102,7 @@ std::optional<SimulatedWorld> simulated_world_of(const ResultFile& file) {
                           sensor->mounting, facts.optional_number("min_range").value_or(0.0)),
       .same_path = facts.text("noise") != "matched",
       .sensor = *sensor};
+  if (map_is_known(file)) world.prior = prior_of(facts);
   if (!facts.complete()) return std::nullopt;
   return world;
 }

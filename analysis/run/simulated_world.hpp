@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/core/prior.hpp"
 #include "engine/records/result_file.hpp"
 #include "filters/models/field_of_view.hpp"
 #include "filters/models/sensor.hpp"
@@ -23,7 +24,13 @@ struct SimulatedWorld {
   /// Whether all runs share the path: the noise is on the controls that filters receive.
   bool same_path = true;
   Sensor sensor = {};
+  /// Deviations of what filters know at the start; nullopt if they estimate the map and know the
+  /// start exactly.
+  std::optional<PriorDeviations> prior = {};
 };
+
+/// Returns whether the filters of a study are given the map.
+bool map_is_known(const ResultFile& file);
 
 /// The simulated world, read from the attributes of /scenario; nullopt if the file is not of a
 /// simulation or lacks an attribute.

@@ -35,8 +35,9 @@ void MapErrorSums::add(const std::optional<MapScores>& run) {
   }
 }
 
-std::string MapErrorSums::reason(bool known) const {
-  if (!known) return "nobody knows where the landmarks are";
+std::string MapErrorSums::reason(const MapCriteria& map) const {
+  if (map.is_exact) return "the filter is given the map and takes it to be exact";
+  if (!map.known) return "nobody knows where the landmarks are";
   if (n_runs_ == 0) return "no run is complete";
   if (n_maps_ == 0) {
     return "maps are not stored, or not whole: add final_map to record.columns (and enlarge "
@@ -49,9 +50,9 @@ std::string MapErrorSums::reason(bool known) const {
   return {};
 }
 
-MapErrors MapErrorSums::result(double level, bool known) const {
+MapErrors MapErrorSums::result(double level, const MapCriteria& map) const {
   MapErrors errors;
-  errors.missing = reason(known);
+  errors.missing = reason(map);
   if (!errors.missing.empty()) return errors;
   if (landmarks_.empty()) return errors;
   errors.undefined = undefined_;

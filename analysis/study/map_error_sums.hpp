@@ -39,8 +39,8 @@ class MapErrorSums {
  public:
   /// Adds a run; `run` is nullopt if its map is not stored or not whole.
   void add(const std::optional<MapScores>& run);
-  /// The result at `level`; `known` is whether the true positions of the landmarks are known.
-  MapErrors result(double level, bool known) const;
+  /// The result at `level` for maps that are judged by the criteria `map`.
+  MapErrors result(double level, const MapCriteria& map) const;
   static constexpr auto parts() {
     return std::tuple(added(&MapErrorSums::landmarks_, &MapErrorSums::n_runs_,
                             &MapErrorSums::n_maps_, &MapErrorSums::undefined_));
@@ -55,7 +55,7 @@ class MapErrorSums {
                               &LandmarkSums::valid));
     }
   };
-  std::string reason(bool known) const;
+  std::string reason(const MapCriteria& map) const;
 
   std::vector<LandmarkSums> landmarks_;  ///< {landmark} sums over the runs
   std::size_t n_runs_ = 0, n_maps_ = 0, undefined_ = 0;

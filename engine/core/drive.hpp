@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/core/pose.hpp"
+#include "engine/core/prior.hpp"
 
 #include <Eigen/Core>
 
@@ -9,6 +10,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -69,7 +71,7 @@ struct Itinerary {
   std::vector<std::uint32_t> scan_step;    ///< {scan} index of the step after which it is taken
   std::vector<Eigen::Vector2d> landmarks;  ///< [m] true positions, by identity; empty if unknown
   std::vector<Eigen::Vector2d> waypoints;  ///< [m] way-points, for figures only; may be empty
-  Pose start;  ///< pose before the first step, which the filter knows exactly
+  Pose start;  ///< pose before the first step, which the filter knows if it has no Prior
   std::vector<ReferencePath> references;  ///< references of a recorded drive
   std::size_t moving_controls = 1;        ///< number of leading components for Control::stands()
   bool has_truth = true;                  ///< true if drives have true poses, unlike recorded ones
@@ -88,6 +90,9 @@ struct Drive {
   std::vector<Pose> truth;                ///< {step} pose after the step; empty if unknown
   std::vector<Detection> detections;      ///< detections of all scans, in order
   std::vector<std::uint32_t> scan_begin;  ///< scans() + 1 offsets into `detections`
+  /// Knowledge of the filter before the first step; nullopt if it starts exactly at
+  /// Itinerary::start and without landmarks.
+  std::optional<Prior> prior = {};
 
   Scan scan(std::size_t s) const {
     return Scan(detections).subspan(scan_begin[s], scan_begin[s + 1] - scan_begin[s]);

@@ -3,6 +3,8 @@
 
 #include "engine/core/drive.hpp"
 #include "engine/core/pose.hpp"
+#include "engine/core/prior.hpp"
+#include "engine/errors.hpp"
 #include "engine/namespaces.hpp"
 #include "engine/random/stream.hpp"
 #include "engine/threads/parallel.hpp"
@@ -65,12 +67,6 @@ class StepContext {
   const StopFlag* stop_;
 };
 
-/// Mean and covariance of an estimate of the pose; covariance over (x, y, heading) [m, m, rad].
-struct PoseMoments {
-  Pose mean;
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-};
-
 /// The estimate of a filter (EQUATIONS 19).
 struct PoseEstimate {
   PoseMoments spread;  ///< spread of weighted particles; Gaussian of a Kalman filter
@@ -117,13 +113,6 @@ struct ParticleColumns {
   std::span<std::uint32_t> ancestor;  ///< {particle} index of the parent one scan earlier
 };
 
-/// One landmark in the report of a filter. It has the identity of the world with known association,
-/// else the order of initialisation.
-struct LandmarkEstimate {
-  Eigen::Vector2d mean;        ///< [m]
-  Eigen::Matrix2d covariance;  ///< [m^2]
-};
-
 /// Pose and map as one Gaussian: rows x, y, heading, then x and y of each landmark [m, m, rad, m,
 /// m, ...].
 struct JointEstimate {
@@ -141,6 +130,13 @@ class SlamFilter {
   virtual ~SlamFilter() = default;
   /// Starts a run at pose `start` without landmarks. Nothing of an earlier run may remain.
   virtual void start(const Pose& start) = 0;
+  /// Starts a run with this knowledge of the pose and of the map, in place of start(). If the map
+  /// is known, the filter never initialises a landmark. Called only if the filter declares that it
+  /// takes a prior.
+  virtual void start_from(const StepContext& context, const Prior& prior) {
+    (void)context, (void)prior;
+    expect(false, "a filter that takes no prior is started from one");
+  }
   /// Predicts by `control`, held for `duration` [s].
   virtual void predict(const StepContext& context, const Control& control, double duration) = 0;
   /// Updates with `scan`, which may be empty.

@@ -51,12 +51,15 @@ enum class Draw : std::uint8_t {
   world_miss = 2,        ///< misses of detections, index = landmark
   world_clutter = 3,     ///< number and position of false alarms
   world_landmark = 4,    ///< displacement of landmarks in random maps
+  world_start = 5,       ///< error of the start that a filter is given
+  world_survey = 6,      ///< error of a known landmark that a filter is given, index = landmark
   motion_sample = 16,    ///< motion noise of FastSLAM I, index = particle
   pose_proposal = 17,    ///< draw from the proposal, index = particle
   resampling = 18,       ///< index = 0 (systematic) or particle
   evolution = 19,        ///< differential evolution
   kernel_sample = 23,    ///< marginal filters: draw from the chosen kernel, index = particle
   external_filter = 28,  ///< seed of the generator of a program outside the process
+  start_sample = 29,     ///< pose at the start, drawn from its prior, index = particle
   analysis_bootstrap = 32,
   test = 255,
 };

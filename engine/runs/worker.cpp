@@ -27,6 +27,16 @@ std::string_view defect_of(const PoseEstimate* estimate) {
   return {};
 }
 
+void start(const RunConditions& conditions, SlamFilter& filter) {
+  if (const std::optional<Prior>& prior = conditions.drive.prior) {
+    const StepContext context(conditions.seed, conditions.run, 0, Parallel::serial(),
+                              &conditions.stop);
+    filter.start_from(context, *prior);
+  } else {
+    filter.start(conditions.itinerary.start);
+  }
+}
+
 /// Runs one step, with the scans from `scan` on that end it. Returns a description of the defect of
 /// its estimate; empty if there is none.
 std::string_view take_step(const RunConditions& conditions, const StepContext& context,
@@ -55,7 +65,7 @@ RunEnd run_one(const RunConditions& conditions, SlamFilter& filter, Recorder& re
   std::uint32_t step = 0;
   std::size_t scan = 0;
   try {
-    filter.start(conditions.itinerary.start);
+    start(conditions, filter);
     for (; step < conditions.itinerary.steps(); ++step) {
       if (conditions.stop.is_set()) return RunEnd::dropped;
       const StepContext context(conditions.seed, conditions.run, step,

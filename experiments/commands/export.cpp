@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <iostream>
+#include <vector>
 
 namespace montecarta::experiments {
 namespace {
@@ -38,10 +39,16 @@ std::string belief_text(const Study& study) {
   std::string text;
   for (const char* section : {"belief", "association"}) {
     text += std::string("[") + section + "]\n";
-    for (const auto& [key, value] : study.settings.section(section))
+    for (const auto& [key, value] : stated_settings(study.settings, section))
       text += key + " = " + value + "\n";
   }
   return text;
+}
+
+std::vector<Eigen::Vector2d> places_in(const std::vector<LandmarkEstimate>& map) {
+  std::vector<Eigen::Vector2d> places;
+  for (const LandmarkEstimate& landmark : map) places.push_back(landmark.mean);
+  return places;
 }
 
 }  // namespace
@@ -66,7 +73,9 @@ int export_command(const Arguments& arguments) {
                           known ? Identities::told : Identities::withheld);
     log.components = components_of(sensor_of(study.settings, "scenario"));
     const std::string name = name_of_run(run, plan.runs);
+    if (drive.prior) log.start = drive.prior->pose.mean;
     write_log_csv(log, folder / "runs" / name, folder / "truth" / name);
+    if (drive.prior) write_landmarks_csv(places_in(drive.prior->map), folder / "runs" / name);
   }
   write_text(folder / "belief.ini", belief_text(study));
   write_text(folder / "truth" / "study.ini", plan.resolved_text);

@@ -421,9 +421,13 @@ void write_log_csv(const DriveLog& log, const fs::path& folder, const fs::path& 
   for (const ReferencePath& reference : log.references) {
     write_text(truth_folder / file_of_reference(reference.name), csv_of(reference));
   }
-  LogTable landmarks(kLandmarkHeaders[0]);
-  for (const Eigen::Vector2d& place : log.landmarks) landmarks.add({place.x(), place.y()});
-  if (!log.landmarks.empty()) write_text(truth_folder / "landmarks.csv", landmarks.text());
+  if (!log.landmarks.empty()) write_landmarks_csv(log.landmarks, truth_folder);
+}
+
+void write_landmarks_csv(std::span<const Eigen::Vector2d> landmarks, const fs::path& folder) {
+  LogTable table(kLandmarkHeaders[0]);
+  for (const Eigen::Vector2d& place : landmarks) table.add({place.x(), place.y()});
+  write_text(folder / "landmarks.csv", table.text());
 }
 
 namespace {

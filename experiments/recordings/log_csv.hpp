@@ -4,6 +4,7 @@
 #include "experiments/recordings/drive_log.hpp"
 
 #include <filesystem>
+#include <span>
 #include <string>
 
 namespace montecarta::experiments {
@@ -34,6 +35,10 @@ void write_log_csv(const DriveLog& log, const std::filesystem::path& folder);
 /// see, to a separate folder. That must be new or empty too.
 void write_log_csv(const DriveLog& log, const std::filesystem::path& folder,
                    const std::filesystem::path& truth_folder);
+
+/// Writes the landmarks.csv of a log: positions [m] by identity.
+void write_landmarks_csv(std::span<const Eigen::Vector2d> landmarks,
+                         const std::filesystem::path& folder);
 
 /// Reads a reference of a log (experiments/RECORDED_DRIVES.md): fixes of a position or a pose,
 /// optionally with standard deviations or the covariance of their errors. Throws StudyError with

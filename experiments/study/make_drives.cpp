@@ -4,6 +4,7 @@
 #include "engine/errors.hpp"
 #include "experiments/drives/simulated_drive.hpp"
 #include "experiments/recordings/recorded_drive.hpp"
+#include "experiments/study/known_map.hpp"
 #include "experiments/study/read_drives.hpp"
 #include "experiments/study/vehicle_and_sensor.hpp"
 #include "experiments/text/words.hpp"
@@ -168,7 +169,9 @@ std::function<std::vector<Eigen::Vector2d>(std::uint64_t run)> own_landmarks_of(
   return RandomMap(study.world.landmarks, scenario.map_shift, seed);
 }
 
-std::shared_ptr<const DriveSource> drives_of(const Study& study, std::uint64_t seed) {
+namespace {
+
+std::shared_ptr<const DriveSource> without_prior(const Study& study, std::uint64_t seed) {
   const Settings& s = study.settings;
   if (study.logs.empty()) {
     refuse_other_controls(s, controls_of(vehicle_of(s, "scenario")));
@@ -177,6 +180,17 @@ std::shared_ptr<const DriveSource> drives_of(const Study& study, std::uint64_t s
   }
   if (study.logs.size() > 1) return several_drives_of(study);
   return std::make_shared<RecordedDrive>(drive_of(s, *study.logs.front()));
+}
+
+}  // namespace
+
+std::shared_ptr<const DriveSource> drives_of(const Study& study, std::uint64_t seed) {
+  const Settings& s = study.settings;
+  auto drives = without_prior(study, seed);
+  if (!map_is_known(s)) return drives;
+  return std::make_shared<DrivesInKnownMap>(std::move(drives), own_landmarks_of(study, seed),
+                                            prior_deviations_of(s, "scenario"),
+                                            prior_deviations_of(s, "belief"), seed);
 }
 
 }  // namespace montecarta::experiments

@@ -5,6 +5,7 @@
 #include "engine/random/stream.hpp"
 #include "engine/records/columns.hpp"
 #include "experiments/study/enough_runs.hpp"
+#include "experiments/study/known_map.hpp"
 #include "experiments/study/make_drives.hpp"
 #include "experiments/study/vehicle_and_sensor.hpp"
 #include "experiments/text/words.hpp"
@@ -12,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace montecarta::experiments {
 namespace {
@@ -50,6 +52,10 @@ AssociationSettings association_of(const Settings& s) {
                      ": new_gate_sigma is below gate_sigma (a detection would be old "
                      "and new at once): enlarge new_gate_sigma");
   }
+  if (map_is_known(s)) {  // a known map is complete
+    association.new_gate = std::numeric_limits<double>::infinity();
+    association.most_landmarks = std::numeric_limits<std::size_t>::max();
+  }
   return association;
 }
 
@@ -68,12 +74,13 @@ ColumnSelection columns_of(const Settings& s) {
   return columns;
 }
 
-/// Number of rows of the map columns. With unknown association, landmarks are numbered in the order
-/// of initialisation and may outnumber those of the world, and for a recorded drive the number of
-/// those is unknown.
+/// Number of rows of the map columns. A map that is known exactly is no estimate and has none. With
+/// unknown association, landmarks are numbered in the order of initialisation and may outnumber
+/// those of the world, and for a recorded drive the number of those is unknown.
 std::size_t map_rows_of(const FilterSetup& setup, const Settings& s) {
+  if (map_is_exact(s)) return 0;
   const std::uint64_t asked = s.count("record", "map_rows");
-  if (setup.association.kind == Association::known) return setup.landmarks;
+  if (setup.association.kind == Association::known || setup.map_is_known) return setup.landmarks;
   if (asked > 0) return asked;
   return s.scenario_kind() == "simulated" ? setup.landmarks : setup.association.most_landmarks;
 }
@@ -102,16 +109,20 @@ std::function<std::unique_ptr<SlamFilter>()> maker_of(const CellSpec& spec,
 
 FilterSetup setup_of(const CellSpec& spec, const Study& study) {
   std::map<std::string, std::string, std::less<>> values(spec.options.begin(), spec.options.end());
+  const bool is_known = map_is_known(study.settings);
   return {.belief = belief_of(study.settings, spec),
           .association = association_of(study.settings),
           .options = FilterOptions(std::move(values)),
-          .landmarks = identities_of(study)};
+          .landmarks = std::max(identities_of(study), is_known ? landmarks_of(study).size() : 0),
+          .map_is_known = is_known};
 }
 
-/// The capabilities that the filter has with this setup.
-Capabilities capabilities_of(const FilterKind& filter, const FilterSetup& setup) {
+/// The capabilities that the filter has in this study.
+Capabilities capabilities_of(const CellSpec& spec, const Study& study) {
+  const FilterKind& filter = *spec.filter;
   Capabilities reports = filter.reports;
-  if (filter.restrict_reports) filter.restrict_reports(setup, reports);
+  if (filter.restrict_reports) filter.restrict_reports(setup_of(spec, study), reports);
+  if (map_is_exact(study.settings)) reports.joint = false;
   return reports;
 }
 
@@ -130,7 +141,7 @@ Cell cell_of(const CellSpec& spec, const Study& study, ExternalPrograms programs
           .filter = filter.name,
           .long_name = filter.long_name + (spec.distinction.empty() ? "" : ", " + spec.distinction),
           .particles = particles_of(spec),
-          .reports = capabilities_of(filter, setup),
+          .reports = capabilities_of(spec, study),
           .landmarks = map_rows_of(setup, study.settings),
           .is_deterministic = is_deterministic(filter),
           .settings = spec.options,
@@ -140,9 +151,9 @@ Cell cell_of(const CellSpec& spec, const Study& study, ExternalPrograms programs
 /// The settings of the scenario, then those of other sections with the name of the section in
 /// front.
 std::vector<std::pair<std::string, std::string>> scenario_facts(const Settings& settings) {
-  auto facts = settings.section("scenario");
+  auto facts = stated_settings(settings, "scenario");
   for (const char* section : {"belief", "association"}) {
-    for (const auto& [key, value] : settings.section(section))
+    for (const auto& [key, value] : stated_settings(settings, section))
       facts.emplace_back(std::string(section) + "." + key, value);
   }
   return facts;
@@ -211,6 +222,9 @@ RunRange parse_shard(const std::string& text, std::uint64_t runs, std::uint64_t 
 
 std::string objection_to_joint(const Study& study) {
   const auto has_joint = [](const CellSpec& cell) { return cell.filter->reports.joint; };
+  if (map_is_exact(study.settings)) {
+    return "(a map that is known exactly has no covariance): take joint out, or give map_sigma_m";
+  }
   if (std::ranges::none_of(study.cells, has_joint)) {
     std::vector<std::string> names;
     for (const FilterKind& kind : filter_kinds()) {
@@ -229,7 +243,7 @@ std::string objection_to_joint(const Study& study) {
 
 std::string objection_to_observability(const Study& study) {
   const auto reports_it = [&](const CellSpec& cell) {
-    const Capabilities reports = capabilities_of(*cell.filter, setup_of(cell, study));
+    const Capabilities reports = capabilities_of(cell, study);
     return std::ranges::count(reports.own_columns, "observability", &OwnColumn::group) > 0;
   };
   if (std::ranges::any_of(study.cells, reports_it)) return {};

@@ -102,6 +102,21 @@ void add_sensor_kind(const SectionOfTable& section, double least) {
   }
 }
 
+/// Adds the deviation of a known map and those of the start.
+void add_map_deviation(const SectionOfTable& section) {
+  section.number("map_sigma_m", "m", "0", 0, 1000,
+                 "standard deviation of a known landmark, in x and in y. Every run draws the "
+                 "errors of the map that the filters are given, if belief.map = known.");
+}
+void add_start_deviations(const SectionOfTable& section) {
+  section.number("start_sigma_m", "m", "0", 0, 1e6,
+                 "standard deviation of the start, in x and in y. Every run draws the error of the "
+                 "start that the filters are given, if belief.map = known.");
+  section.number("start_sigma_deg", "deg", "0", 0, 180,
+                 "standard deviation of the heading at the start. Every run draws the error of the "
+                 "heading that the filters are given, if belief.map = known.");
+}
+
 /// Adds the course of the vehicle and the variation between runs.
 void add_course(const SectionOfTable& scenario) {
   require(scenario.text("world", "name of a shipped world, or path of a .csv file"), "web_loop");
@@ -124,6 +139,7 @@ void add_course(const SectionOfTable& scenario) {
       "With random every run displaces each of them uniformly within map_shift.");
   scenario.number("map_shift", "m", "10", 0, 1e4,
                   "largest displacement of a landmark of a random map");
+  add_map_deviation(scenario);
 }
 
 void add_drive(const SectionOfTable& scenario) {
@@ -142,6 +158,7 @@ void add_drive(const SectionOfTable& scenario) {
   scenario.number("start_x", "m", "0", -1e6, 1e6, "x before the first step");
   scenario.number("start_y", "m", "0", -1e6, 1e6, "y before the first step");
   scenario.number("start_heading_deg", "deg", "0", -360, 360, "heading before the first step");
+  add_start_deviations(scenario);
   scenario.add_for_vehicles(control_noise_parameters());
   add_growth(scenario);
   add_sensor_kind(scenario, 0.0);
@@ -174,8 +191,32 @@ void add_scenario(std::vector<Setting>& table) {
                    "probability that a landmark in view is missed");
 }
 
-/// Adds [belief]. In a simulation all settings default to those of [scenario]. A setting with an
+/// Makes a setting of [belief] default to that of [scenario] in a simulation. A setting with an
 /// example must be given for a recorded drive, for which only the user knows it.
+void follow_scenario(Setting& setting) {
+  setting.meaning = engine::first_sentence(setting.meaning) +
+                    ". This is the value that the filters assume. The true one is that of "
+                    "[scenario].";
+  if (!setting.example.empty()) set_for_log(setting, kRequired);
+  setting.fallback_of_kind.emplace_back("simulated", kFromScenario);
+}
+
+/// Adds what filters know at the start.
+void add_prior(const SectionOfTable& belief, std::vector<Setting>& table) {
+  belief.choice(
+      "map", {"estimated", "known"},
+      "whether filters estimate the map (SLAM) or are given it (localisation). With known they are "
+      "given the position of every landmark, with errors of map_sigma_m, and never initialise one, "
+      "so that new_gate_sigma and most_landmarks have no effect.");
+  const std::size_t first = table.size();
+  add_map_deviation(belief);
+  add_start_deviations(belief);
+  for (Setting& setting : std::span(table).subspan(first)) {
+    follow_scenario(setting);
+    belief.only_if(setting, "map", {"known"});
+  }
+}
+
 void add_belief(std::vector<Setting>& table) {
   const std::size_t first = table.size();
   const SectionOfTable belief("belief", table);
@@ -184,13 +225,8 @@ void add_belief(std::vector<Setting>& table) {
   belief.add_for_vehicles(control_noise_parameters());
   add_growth(belief);
   add_sensor_kind(belief, kTiny);
-  for (Setting& setting : std::span(table).subspan(first)) {
-    setting.meaning = engine::first_sentence(setting.meaning) +
-                      ". This is the value that the filters assume. The true one is that of "
-                      "[scenario].";
-    if (!setting.example.empty()) set_for_log(setting, kRequired);
-    setting.fallback_of_kind.emplace_back("simulated", kFromScenario);
-  }
+  for (Setting& setting : std::span(table).subspan(first)) follow_scenario(setting);
+  add_prior(belief, table);
 }
 
 void add_study(const SectionOfTable& study) {

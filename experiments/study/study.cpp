@@ -4,6 +4,7 @@
 #include "engine/errors.hpp"
 #include "experiments/external/external_filter.hpp"
 #include "experiments/files/files.hpp"
+#include "experiments/study/known_map.hpp"
 #include "experiments/study/read_drives.hpp"
 #include "experiments/text/words.hpp"
 
@@ -97,6 +98,24 @@ World world_of(const IniText& ini, const Settings& settings, const std::filesyst
   return at_place(place + ": scenario.world = " + name, [&] { return find_world(name, {folder}); });
 }
 
+/// A setting that has no effect and is left out, so that the fingerprints of studies without it do
+/// not change.
+struct SilentSetting {
+  std::string section, key, value;
+};
+
+bool is_silent(const std::string& section, const std::string& key, const std::string& value) {
+  static const std::vector<SilentSetting> silent{{"study", "until", ""},
+                                                 {"record", "full_runs", "0"},
+                                                 {"scenario", "map_sigma_m", "0"},
+                                                 {"scenario", "start_sigma_m", "0"},
+                                                 {"scenario", "start_sigma_deg", "0"},
+                                                 {"belief", "map", "estimated"}};
+  return std::ranges::any_of(silent, [&](const SilentSetting& one) {
+    return one.section == section && one.key == key && one.value == value;
+  });
+}
+
 void refuse_world(const IniText& ini, const Settings& settings) {
   if (!has_inline_world(ini)) return;
   throw StudyError(settings.place("scenario", "kind") +
@@ -128,6 +147,7 @@ Study parse_study(const std::string& text, const std::string& name,
       study.settings.replace("association", "kind", "known");
   }
   refuse_sensors(study.settings, study.cells);
+  refuse_known_map(study.settings, study.cells, landmarks_of(study).size());
   study.until = parse_stopping_rule(study.settings.text("study", "until"),
                                     study.settings.place("study", "until"));
   if (study.until) study.settings.replace("study", "until", text_of(*study.until));
@@ -135,6 +155,10 @@ Study parse_study(const std::string& text, const std::string& name,
     study.settings.replace("study", "title", study.settings.text("study", "name"));
   }
   return study;
+}
+
+const std::vector<Eigen::Vector2d>& landmarks_of(const Study& study) {
+  return study.logs.empty() ? study.world.landmarks : study.logs.front()->landmarks;
 }
 
 std::size_t identities_of(const Study& study) {
@@ -148,10 +172,12 @@ Study read_study(const std::filesystem::path& path, std::span<const std::string>
   return parse_study(text_file(path), path.string(), path.parent_path(), overrides);
 }
 
-/// Returns whether a setting has no effect and is left out of the resolved text, so that the
-/// fingerprints of studies without it do not change.
-bool is_silent(const std::string& key, const std::string& value) {
-  return (key == "until" && value.empty()) || (key == "full_runs" && value == "0");
+std::vector<std::pair<std::string, std::string>> stated_settings(const Settings& settings,
+                                                                 const std::string& section) {
+  auto stated = settings.section(section);
+  std::erase_if(stated,
+                [&](const auto& pair) { return is_silent(section, pair.first, pair.second); });
+  return stated;
 }
 
 std::string resolved_text(const Study& study) {
@@ -159,9 +185,8 @@ std::string resolved_text(const Study& study) {
   for (const std::string& section : study_sections()) {
     if (section == "world" && !study.logs.empty()) continue;
     text += "[" + section + "]\n";
-    for (const auto& [key, value] : study.settings.section(section)) {
-      if (!is_silent(key, value)) text += key + " = " + value + "\n";
-    }
+    for (const auto& [key, value] : stated_settings(study.settings, section))
+      text += key + " = " + value + "\n";
     if (section == "cells") {
       for (const CellSpec& cell : study.cells) text += "cell = " + cell_line(cell) + "\n";
     }

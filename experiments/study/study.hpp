@@ -13,6 +13,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace montecarta::experiments {
@@ -27,6 +28,9 @@ struct Study {
   std::optional<StoppingRule> until;  ///< rule by which a cell stops early; nullopt: never
 };
 
+/// Known positions of the landmarks [m]: those of the world, or surveyed ones; may be empty.
+const std::vector<Eigen::Vector2d>& landmarks_of(const Study& study);
+
 /// Number of landmarks that detections can name; 0 if they have no identities.
 std::size_t identities_of(const Study& study);
 
@@ -38,6 +42,11 @@ Study read_study(const std::filesystem::path& path, std::span<const std::string>
 /// begin in `folder`.
 Study parse_study(const std::string& text, const std::string& name,
                   const std::filesystem::path& folder, std::span<const std::string> overrides = {});
+
+/// Pairs (key, value) of a section as the resolved text has them: without settings that have no
+/// effect and came after the first studies.
+std::vector<std::pair<std::string, std::string>> stated_settings(const Settings& settings,
+                                                                 const std::string& section);
 
 /// The study file with all defaults filled in, including the world, in canonical order and
 /// spelling. Reading it gives the same study and the same text, so its SHA-256 identifies the

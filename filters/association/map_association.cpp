@@ -39,17 +39,17 @@ void MapAssociation::pair_nearest(Scan scan, std::span<const NearestSearch> sear
   counts_ = association_counts(scan, pairings_, made_of_);
 }
 
-void MapAssociation::add(const Detection& fresh) {
+void MapAssociation::add(std::int32_t identity) {
   const std::size_t slot = made_of_.size();
   if (known()) {
-    const auto identity = static_cast<std::size_t>(fresh.identity);
-    if (identity >= slot_of_identity_.size()) slot_of_identity_.resize(identity + 1, kUnseen);
-    slot_of_identity_[identity] = static_cast<std::uint32_t>(slot);
+    const auto k = static_cast<std::size_t>(identity);
+    if (k >= slot_of_identity_.size()) slot_of_identity_.resize(k + 1, kUnseen);
+    slot_of_identity_[k] = static_cast<std::uint32_t>(slot);
   } else if (slot >= settings_.most_landmarks) {
     throw std::runtime_error("the map grew beyond " + std::to_string(settings_.most_landmarks) +
                              " landmarks");
   }
-  made_of_.push_back(fresh.identity);
+  made_of_.push_back(identity);
 }
 
 std::size_t MapAssociation::slot_of(std::size_t k) const {

@@ -32,9 +32,9 @@ class MapAssociation {
   /// identities are known.
   double unmatched_log_density() const { return known() ? 0.0 : log_new_density_; }
 
-  /// Records that the next landmark of the map is initialised from this detection. Throws RunError
-  /// if the map has grown beyond its limit.
-  void add(const Detection& fresh);
+  /// Records that the next landmark of the map is known, or initialised from a detection, with this
+  /// identity. Throws RunError if the map has grown beyond its limit.
+  void add(std::int32_t identity);
   /// Slot of landmark k of a report: the landmark of identity k if identities are known, else the
   /// k-th that was added. A slot beyond the end of the map means that the map does not hold it.
   std::size_t slot_of(std::size_t k) const;

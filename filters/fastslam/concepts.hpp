@@ -78,8 +78,9 @@ concept Associator = requires(A a, const A decided, const StepContext& context, 
                               typename A::Maps& maps,
                               const std::vector<PoseGaussian<Real>>& predicted,
                               const Weights<Real>& weights, std::size_t block, std::size_t k) {
-  // Begins a run: no landmark is known.
+  // Begins a run: no landmark is known. Then gives every particle the known ones.
   a.start();
+  a.add_known(context, /*map*/ std::span<const LandmarkEstimate>(), maps);
   // Associates a scan for all particles, by their `predicted` poses {block}.
   a.associate(context, scan, maps, predicted);
   { decided.matched_nothing() } -> Is<bool>;
@@ -130,8 +131,8 @@ concept PoseProposal = requires(P p, const P now, const StepContext& context, st
 
 /// A proposal that keeps a Gaussian for each particle between its steps.
 template <class P>
-concept KeepsGaussians = requires(P p) {
-  p.start();       // begins a run
+concept KeepsGaussians = requires(P p, const PoseMoments& start) {
+  p.start(start);  // begins a run: the Gaussian of each particle is that of the start
   p.end_scan();    // all poses of the scan have been drawn
   p.begin_step();  // the particles of the last scan have been resampled, where that was due
 };

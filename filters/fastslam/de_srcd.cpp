@@ -47,6 +47,7 @@ FilterKind de_srcd_kind() {
           .reports = {.particles = true, .mixture = true},
           .options = population_options(
               {options_of_evolution(), central_difference_options(), {map_uncertainty_option()}}),
+          .takes_prior = true,
           .restrict_reports =
               [](const FilterSetup& setup, Capabilities& reports) {
                 const EvolutionMode mode = evolved_settings(setup.options).mode;

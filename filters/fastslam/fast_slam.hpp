@@ -29,12 +29,23 @@ class FastSlam final : public SlamFilter {
         maps_(settings.particles) {}
 
   void start(const Pose& start) override {
-    now_ = StepContext::before_all_steps();
+    start_from(StepContext::before_all_steps(), {.pose = {start}});
+  }
+  /// Particles begin with the prior of the pose as their Gaussian or, if they have none, are drawn
+  /// from it. All have the known map.
+  void start_from(const StepContext& context, const Prior& prior) override {
+    now_ = context;
     population_.start();
     maps_.clear();
     association_.start();
-    if constexpr (KeepsGaussians<Proposal>) proposal_.start();
-    std::fill(poses_.begin(), poses_.end(), BasicPose<Real>{start.x, start.y, start.heading});
+    const Pose& start = prior.pose.mean;
+    std::ranges::fill(poses_, BasicPose<Real>{start.x, start.y, start.heading});
+    if constexpr (KeepsGaussians<Proposal>) {
+      proposal_.start(prior.pose);
+    } else if (!prior.pose.covariance.isZero(0.0)) {
+      draw_start(context, prior.pose.covariance);
+    }
+    association_.add_known(context, prior.map, maps_);
   }
 
   void predict(const StepContext& context, const Control& control, double duration) override {
@@ -70,6 +81,15 @@ class FastSlam final : public SlamFilter {
   }
 
  private:
+  void draw_start(const StepContext& context, const Eigen::Matrix3d& covariance) {
+    const PoseFactor<Real> factor(
+        PoseGaussian<Real>{poses_[0], in_every_lane<Real>(symmetric_of(covariance))});
+    for (std::size_t b = 0; b < poses_.size(); ++b) {
+      const auto first = static_cast<std::uint32_t>(b * kLanesOf<Real>);
+      poses_[b] = draw_from(factor, context.identity(Draw::start_sample, first));
+    }
+  }
+
   const Weights<Real>& weights() const { return population_.weights(); }
 
   void predict_poses(const StepContext& context) {

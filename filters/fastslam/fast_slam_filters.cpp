@@ -25,6 +25,7 @@ FilterKind refined_kind(const char* name, const char* long_name, const char* sou
           .source = source,
           .reports = {.particles = true, .mixture = true},
           .options = std::move(options),
+          .takes_prior = true,
           .restrict_reports =
               [](const FilterSetup& setup, Capabilities& reports) {
                 if (weight_form(setup.options) == WeightForm::ratio) reports.mixture = false;
@@ -46,6 +47,7 @@ FilterKind fastslam1_kind() {
           .options = population_options(),
           .sensors = {},
           .delays_initialisation = true,
+          .takes_prior = true,
           .make = make_fastslam1_of_sensor<Lanes>};
 }
 

@@ -29,8 +29,12 @@ class RefinedCloud {
         weighed_(weighed),
         posterior_(blocks_for<Real>(particles)) {}
 
-  void start() {
+  void start(const PoseMoments& start) {
     motion_.restart();
+    if (!start.covariance.isZero(0.0)) {  // in the frame of the pose, as a motion
+      const Direction<double> d = direction_of(start.mean.heading);
+      motion_ = {Pose(), turned(symmetric_of(start.covariance), {d.cosine, -d.sine})};
+    }
     begin_step();
   }
   void predict(const StepContext& /*context*/, const Control& control, double duration,

@@ -19,6 +19,11 @@ class KnownAssociation {
   explicit KnownAssociation(std::size_t landmarks) : slot_of_(landmarks, kUnseen) {}
 
   void start() { std::fill(slot_of_.begin(), slot_of_.end(), kUnseen); }
+  /// Gives every particle the landmarks of a known map, {identity}.
+  void add_known(const StepContext& context, std::span<const LandmarkEstimate> map, Maps& maps) {
+    for (std::size_t k = 0; k < map.size(); ++k)
+      slot_of_.at(k) = static_cast<std::int32_t>(maps.add(context, map[k]));
+  }
 
   /// Divides the scan into known and new landmarks.
   void associate(const StepContext& context, Scan scan, Maps& maps,

@@ -34,6 +34,14 @@ class NearestAssociation {
     std::fill(counts_.begin(), counts_.end(), Real(0.0));
     made_of_.clear();
   }
+  /// Gives every particle the landmarks of a known map, {identity}.
+  void add_known(const StepContext& context, std::span<const LandmarkEstimate> map, Maps& maps) {
+    for (const LandmarkEstimate& known : map) {
+      const auto identity = static_cast<std::int32_t>(maps.add(context, known));
+      for (std::size_t i = 0; i < particles_; ++i) made_of_.add(i, identity);
+    }
+    std::ranges::fill(counts_, Real(static_cast<double>(map.size())));
+  }
 
   /// Associates every detection by the map of every particle.
   void associate(const StepContext& context, Scan scan, Maps& maps,

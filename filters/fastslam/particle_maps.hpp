@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -84,6 +85,19 @@ class ParticleMaps {
       std::ranges::fill(blocks.subspan(first, n), Landmark{});
     });
     return static_cast<std::uint32_t>(n_slots_++);
+  }
+  /// Adds a slot with the same landmark for every particle; returns its number. Forms of landmarks
+  /// other than a Gaussian have no known maps.
+  std::uint32_t add(const StepContext& context, const LandmarkEstimate& known) {
+    const std::uint32_t slot = add(context);
+    if constexpr (std::is_same_v<Landmark, LandmarkGaussian<Real>>) {
+      const auto& [mean, P] = known;
+      std::ranges::fill(blocks_of(slot),
+                        Landmark{{mean.x(), mean.y()}, {P(0, 0), P(0, 1), P(1, 1)}});
+    } else {
+      expect(false, "a known map in a form of landmarks that is no Gaussian");
+    }
+    return slot;
   }
   std::span<Landmark> blocks_of(std::uint32_t slot) { return slots_[slot].blocks; }
 

@@ -86,8 +86,8 @@ CompressedGaussian::CompressedGaussian(const Belief& belief, Retraction retracti
       retraction_(retraction),
       most_near_(kSmallMap) {}
 
-void CompressedGaussian::start(const Pose& start) {
-  near_.start(start);
+void CompressedGaussian::start(const Pose& start, const Eigen::Matrix3d& covariance) {
+  near_.start(start, covariance);
   make_all_near();
   point_of_.clear();
   balance_ = 0.0;

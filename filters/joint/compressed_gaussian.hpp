@@ -52,7 +52,7 @@ class CompressedGaussian {
 
   CompressedGaussian(const Belief& belief, Retraction retraction, std::size_t room);
 
-  void start(const Pose& start);
+  void start(const Pose& start, const Eigen::Matrix3d& covariance = Eigen::Matrix3d::Zero());
 
   /// Replaces the moments of the pose and of all landmarks, in the order of their slots.
   void replace(const PoseMoments& pose, const MapMoments& map);

@@ -12,6 +12,10 @@ constexpr std::size_t kRoomAtFirst = 300;
 
 }  // namespace
 
+bool has_rotation_information(const FilterSetup& setup) {
+  return fixes_landmark(setup.belief.sensor) && !setup.map_is_known;
+}
+
 JointBelief::JointBelief(const FilterSetup& setup, Retraction retraction, int iterations,
                          Moments moments, std::unique_ptr<Linearisation> linearisation)
     : sensor_(setup.belief.sensor),
@@ -22,10 +26,12 @@ JointBelief::JointBelief(const FilterSetup& setup, Retraction retraction, int it
       iterations_(iterations),
       moments_(moments),
       retraction_(retraction),
-      sigma_(deviations_of(setup.belief.sensor, setup.belief)) {}
+      sigma_(deviations_of(setup.belief.sensor, setup.belief)),
+      has_rotation_information_(has_rotation_information(setup)) {}
 
-void JointBelief::start(const Pose& start) {
-  system_.gaussian.start(start);
+void JointBelief::start(const Prior& prior) {
+  const Pose& start = prior.pose.mean;
+  system_.gaussian.start(start, prior.pose.covariance);
   linearisation_->start(start, system_.gaussian);
   association_.clear();
   point_of_.clear();
@@ -34,6 +40,16 @@ void JointBelief::start(const Pose& start) {
   rotation_information_ = 0.0;
   used_detections_.clear();
   outcome_ = {};
+  for (const LandmarkEstimate& known : prior.map) add_known(known);
+}
+
+/// Adds the next landmark of a known map, which is independent of the pose and of the others.
+void JointBelief::add_known(const LandmarkEstimate& known) {
+  const std::size_t slot = landmarks();
+  add_landmark(static_cast<std::int32_t>(slot), static_cast<std::uint32_t>(slot));
+  system_.gaussian.append(
+      NewPoint{.mean = known.mean, .by_pose = Matrix23::Zero(), .noise = known.covariance});
+  system_.points.append(known.mean - place_of(system_.points.pose()));
 }
 
 void JointBelief::update_with(const MotionIncrement& motion, Scan scan) {
@@ -77,15 +93,15 @@ void JointBelief::find_advancing(Scan scan) {
   }
 }
 
-void JointBelief::add_landmark(const Detection& fresh, std::uint32_t point) {
-  association_.add(fresh);
+void JointBelief::add_landmark(std::int32_t identity, std::uint32_t point) {
+  association_.add(identity);
   point_of_.push_back(point);
 }
 
 void JointBelief::place_landmark(const Detection& fresh) {
   CompressedGaussian& gaussian = system_.gaussian;
   const std::size_t slot = gaussian.landmarks();
-  add_landmark(fresh, static_cast<std::uint32_t>(slot));
+  add_landmark(fresh.identity, static_cast<std::uint32_t>(slot));
   const Eigen::Vector2d offset = linearisation_->offset(system_);
   gaussian.append(vector_of(fresh), offset);
   system_.points.append(gaussian.mean_of(slot) - place_of(gaussian.pose().mean) + offset);
@@ -99,7 +115,7 @@ void JointBelief::initialise_landmarks(Scan scan) {
       place_landmark(scan[k]);
     } else if (advancing_[k]) {
       const auto point = delayed_.advance(system_.gaussian, scan[k]);
-      if (point) add_landmark(scan[k], *point);
+      if (point) add_landmark(scan[k].identity, *point);
     }
   }
 }

@@ -16,6 +16,10 @@
 
 namespace montecarta::filters {
 
+/// Returns whether a rotation of vehicle and map changes no detection, so that detections have no
+/// information about it, and whether a JointBelief can compute what it nevertheless assumes.
+bool has_rotation_information(const FilterSetup& setup);
+
 /// A joint Gaussian over pose and map with the association of its detections. Detections are used
 /// one by one in the order of the scan.
 class JointBelief {
@@ -25,8 +29,8 @@ class JointBelief {
               Moments moments = Moments::map,
               std::unique_ptr<Linearisation> linearisation = at_estimate());
 
-  /// Starts with the vehicle at `start` and no landmarks.
-  void start(const Pose& start);
+  /// Starts from what is known of the pose and of the map.
+  void start(const Prior& prior);
   /// Predicts by `motion`, associates the scan, and conditions the Gaussian on the matched
   /// detections.
   void update_with(const MotionIncrement& motion, Scan scan);
@@ -57,9 +61,9 @@ class JointBelief {
   const MapAssociation& association() const { return association_; }
   /// Information [1/rad^2] about a rotation of vehicle and map that the linearised system gains
   /// from all detections since the start, though they have none (EQUATIONS (15.11)). It is empty
-  /// if one detection does not fix a landmark.
+  /// if has_rotation_information() is false.
   std::span<const double> rotation_information() const {
-    return {&rotation_information_, fixes_landmark(sensor_) ? 1U : 0U};
+    return {&rotation_information_, has_rotation_information_ ? 1U : 0U};
   }
   /// A detection that updated the belief.
   struct UsedDetection {
@@ -78,7 +82,8 @@ class JointBelief {
   void update_with(std::size_t k, const Detection& detection);
 
   void find_advancing(Scan scan);
-  void add_landmark(const Detection& fresh, std::uint32_t point);
+  void add_known(const LandmarkEstimate& known);
+  void add_landmark(std::int32_t identity, std::uint32_t point);
   void place_landmark(const Detection& fresh);
 
   Sensor sensor_;
@@ -92,6 +97,7 @@ class JointBelief {
   Moments moments_;
   Retraction retraction_;
   Eigen::Vector2d sigma_;  ///< deviations of the components of a detection
+  bool has_rotation_information_;
   double rotation_information_ = 0.0;
   std::vector<NearestSearch> searches_;  ///< scratch: {detection} searches of a scan
   std::vector<std::uint32_t> matched_;   ///< scratch: slots that the current scan needs

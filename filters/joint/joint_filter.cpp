@@ -30,13 +30,10 @@ class JointFilter final : public SlamFilter {
         joint_(setup, settings.retraction, settings.iterations, settings.moments,
                std::move(settings.linearisation)) {}
 
-  void start(const Pose& start) override {
-    motion_.restart();
-    joint_.start(start);
-    is_at_scan_ = false;
-    report_ = {};
+  void start(const Pose& start) override { start_with({.pose = {start}}); }
+  void start_from(const StepContext& /*context*/, const Prior& prior) override {
+    start_with(prior);
   }
-
   void predict(const StepContext& /*context*/, const Control& control, double duration) override {
     is_at_scan_ = false;
     advance(motion_, control, duration, belief_, motion_form_);
@@ -65,6 +62,12 @@ class JointFilter final : public SlamFilter {
   }
 
  private:
+  void start_with(const Prior& prior) {
+    motion_.restart();
+    joint_.start(prior);
+    is_at_scan_ = false;
+    report_ = {};
+  }
   void report_update(const StepContext& context, Scan scan) {
     const auto& [log_likelihood, faults] = joint_.outcome();
     if (!std::isfinite(log_likelihood))
@@ -139,7 +142,7 @@ FilterKind joint_kind(const char* name, const char* long_name, const char* sourc
           .sensors = {RangeBearingSensor::kName, PositionSensor::kName},
           .restrict_reports =
               [](const FilterSetup& setup, Capabilities& reports) {
-                if (fixes_landmark(setup.belief.sensor)) return;
+                if (has_rotation_information(setup)) return;
                 std::erase_if(reports.own_columns, [](const OwnColumn& column) {
                   return column.name == rotation_information_column().name;
                 });
@@ -154,7 +157,7 @@ FilterKind one_gaussian_kind(const char* name, const char* long_name, const char
       joint_kind(name, long_name, source,
                  {iterations_option(), linearised_motion_option(), moments_option("map")}, make);
   kind.sensors.clear();
-  kind.delays_initialisation = true;
+  kind.delays_initialisation = kind.takes_prior = true;
   return kind;
 }
 
@@ -193,9 +196,11 @@ FilterKind oc_ekf_slam_kind() {
 }
 
 FilterKind ukf_slam_kind() {
-  return joint_kind("ukf_slam", "unscented Kalman filter SLAM", "Huang, Mourikis, Roumeliotis 2009",
-                    {fitting_motion_option(), moments_option("map")},
-                    linearised_elsewhere<by_sigma_points>);
+  FilterKind kind = joint_kind(
+      "ukf_slam", "unscented Kalman filter SLAM", "Huang, Mourikis, Roumeliotis 2009",
+      {fitting_motion_option(), moments_option("map")}, linearised_elsewhere<by_sigma_points>);
+  kind.takes_prior = true;
+  return kind;
 }
 
 FilterKind robocentric_ekf_slam_kind() {

@@ -93,8 +93,8 @@ void JointGaussian::grow(std::size_t room) {
   map_step_.resize(2, wanted / 2);
 }
 
-void JointGaussian::start(const Pose& start) {
-  pose_ = {start, Eigen::Matrix3d::Zero()};
+void JointGaussian::start(const Pose& start, const Eigen::Matrix3d& covariance) {
+  pose_ = {start, covariance};
   map_.clear(rows());
   n_landmarks_ = 0;
 }

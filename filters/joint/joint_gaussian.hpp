@@ -104,8 +104,8 @@ class JointGaussian {
   /// Reserves memory for `room` landmarks, which grows if needed.
   JointGaussian(const Belief& belief, Retraction retraction, std::size_t room);
 
-  /// Starts with the vehicle exactly at `start` and an empty map.
-  void start(const Pose& start);
+  /// Starts with the vehicle at `start` and an empty map.
+  void start(const Pose& start, const Eigen::Matrix3d& covariance = Eigen::Matrix3d::Zero());
 
   const Belief& belief() const { return belief_; }
   const PoseMoments& pose() const { return pose_; }

@@ -156,7 +156,7 @@ class MarginalFilter final : public SlamFilter {
       learning_.learn(context, match.landmark, heading, poses_, weights(), match.seen,
                       map_[match.landmark]);
     for (const Detection& fresh : association_.fresh()) {
-      association_.add(fresh);
+      association_.add(fresh.identity);
       map_.push_back(learning_.initialised(context, poses_, weights(), observation_of(fresh)));
     }
   }

@@ -17,9 +17,22 @@ class EkfSlam : public SlamFilter {
   explicit EkfSlam(const FilterSetup& setup) : setup_(setup), R_(observation_noise(setup.belief)) {}
 
   void start(const Pose& start) override {
-    mean_ = to_vector(start);
-    P_ = Matrix<3>::Zero();
+    start_from(StepContext::before_all_steps(), {.pose = {start}});
+  }
+  /// A known map is part of the state from the start; its landmarks are independent.
+  void start_from(const StepContext& /*context*/, const Prior& prior) override {
+    const auto n = static_cast<Eigen::Index>(3 + 2 * prior.map.size());
+    mean_.setZero(n);
+    P_.setZero(n, n);
+    mean_.head<3>() = to_vector(prior.pose.mean);
+    P_.topLeftCorner<3, 3>() = prior.pose.covariance;
     identities_.clear();
+    for (const LandmarkEstimate& known : prior.map) {
+      const Eigen::Index row = row_of(identities_.size());
+      mean_.segment<2>(row) = known.mean;
+      P_.block<2, 2>(row, row) = known.covariance;
+      identities_.push_back(static_cast<std::int32_t>(identities_.size()));
+    }
     report_ = {};
   }
 

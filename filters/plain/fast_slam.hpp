@@ -23,10 +23,21 @@ class FastSlam : public SlamFilter {
                                                                    : Resampling::stratified) {}
 
   void start(const Pose& start) override {
-    Particle first;
-    first.pose = first.refined_pose = to_vector(start);
-    particles_.assign(setup_.options.integer("particles"), first);
-    for (Particle& p : particles_) p.log_weight = -std::log(size());
+    start_from(StepContext::before_all_steps(), {.pose = {start}});
+  }
+  /// All particles have the known map.
+  void start_from(const StepContext& context, const Prior& prior) override {
+    const Vector<3> mean = to_vector(prior.pose.mean);
+    const Matrix<3> root = root_along(mean(2), prior.pose.covariance);
+    particles_.assign(setup_.options.integer("particles"), {});
+    for (std::uint32_t i = 0; i < particles_.size(); ++i) {
+      Particle& p = particles_[i];
+      place_at_start(mean, root, context.stream(Draw::start_sample, i), p);
+      p.refined_pose = p.pose;
+      p.refined_covariance = p.covariance;
+      p.log_weight = -std::log(size());
+      p.map = known_map(prior.map);
+    }
     forget_ancestors();
     report_ = {};
     is_after_scan_ = false;
@@ -85,6 +96,9 @@ class FastSlam : public SlamFilter {
   const std::vector<Particle>& population() const { return particles_; }
 
  protected:
+  /// Places a particle by the prior N(mean, root root') of the pose at the start.
+  virtual void place_at_start(const Vector<3>& mean, const Matrix<3>& root, RngStream stream,
+                              Particle& p) const = 0;
   virtual void predict_particle(const StepContext& context, std::uint32_t i, Particle& p,
                                 const Control& control, double duration) = 0;
   /// Multiplies the weight of a particle by the likelihood of the scan, and draws its pose.

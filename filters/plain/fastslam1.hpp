@@ -13,6 +13,11 @@ class FastSlam1 : public FastSlam {
   PoseEstimate estimate() const override { return {spread_of(particles_), std::nullopt}; }
 
  private:
+  void place_at_start(const Vector<3>& mean, const Matrix<3>& root, RngStream stream,
+                      Particle& p) const override {
+    p.pose = drawn_from(mean, root, stream);
+  }
+
   /// x ~ f(x, u + e), e ~ N(0, Q), the first half of EQUATIONS (5.1).
   void predict_particle(const StepContext& context, std::uint32_t i, Particle& p,
                         const Control& control, double duration) override {

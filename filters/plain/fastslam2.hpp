@@ -34,6 +34,14 @@ class FastSlam2 : public FastSlam {
   /// (EQUATIONS 19). FilterKind::reports.mixture must say the same, else the runs fail.
   virtual bool weighs_draws() const { return weights_ == "ratio"; }
 
+  /// The prior is the Gaussian of each particle, which the first scan refines before the draw.
+  void place_at_start(const Vector<3>& mean, const Matrix<3>& root, RngStream /*stream*/,
+                      Particle& p) const final {
+    p.pose = mean;
+    p.covariance = root * root.transpose();
+    p.factor = root;
+  }
+
   /// Moves (p.pose, p.covariance) by one step.
   virtual void move_gaussian(Particle& p, const Control& control, double duration) const {
     move_linearised(p.pose, p.covariance, control, duration, belief_);

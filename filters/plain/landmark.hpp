@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace montecarta::filters::plain {
@@ -20,6 +21,18 @@ struct Landmark {
   std::int32_t identity = 0;             ///< of the detection that initialised it
 };
 using Map = std::vector<Landmark>;
+
+/// The map of a filter that is given these landmarks, {identity}.
+inline Map known_map(std::span<const LandmarkEstimate> landmarks) {
+  Map map;
+  for (const auto& [mean, covariance] : landmarks) {
+    map.push_back({.mean = mean,
+                   .covariance = covariance,
+                   .factor = psd_chol(covariance),
+                   .identity = static_cast<std::int32_t>(map.size())});
+  }
+  return map;
+}
 
 /// R, the covariance of the noise of (range, bearing).
 inline Matrix<2> observation_noise(const Belief& belief) {

@@ -16,6 +16,14 @@ class RiekfSlam final : public EkfSlam {
  public:
   using EkfSlam::EkfSlam;
 
+  /// The prior is that of e = T xi, so that P_ = T^-1 P T^-T.
+  void start_from(const StepContext& context, const Prior& prior) override {
+    EkfSlam::start_from(context, prior);
+    const Eigen::VectorXd Jp = quarter_turned_points();
+    P_ -= (Jp * P_.row(2)).eval();
+    P_ -= (P_.col(2) * Jp.transpose()).eval();
+  }
+
   /// xi changes by the noise alone, with the derivative B (EQUATIONS (15.17)).
   void predict(const StepContext& /*context*/, const Control& u, double duration) override {
     const auto step = linearised_move(pose(), u, duration, setup_.belief.vehicle);

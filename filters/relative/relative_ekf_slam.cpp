@@ -143,7 +143,7 @@ class RelativeEkfSlam final : public SlamFilter {
     for (const RelativeGaussian::Seen& seen : duplicates_) gaussian_.add_duplicate(seen);
     for (std::size_t k = 0; k < scan.size(); ++k) {
       if (!is_fresh(association_.pairings()[k])) continue;
-      association_.add(scan[k]);
+      association_.add(scan[k].identity);
       gaussian_.add_landmark(observation_of(scan[k]));
     }
   }

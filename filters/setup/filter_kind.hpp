@@ -28,6 +28,7 @@ struct FilterKind {
   /// True if it initialises landmarks that one detection does not fix. It then needs known
   /// association.
   bool delays_initialisation = false;
+  bool takes_prior = false;  ///< true if it can be started from a Prior, with a known map
   /// Removes from the capabilities those that the filter does not have with this setup; empty: it
   /// has all.
   std::function<void(const FilterSetup&, Capabilities&)> restrict_reports = {};

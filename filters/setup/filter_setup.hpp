@@ -64,6 +64,8 @@ struct FilterSetup {
   FilterOptions options;
   /// Number of landmarks in the world; bounds identities with known association.
   std::size_t landmarks = 0;
+  /// True if the filter is started from a Prior with a map.
+  bool map_is_known = false;
 };
 
 }  // namespace montecarta::filters

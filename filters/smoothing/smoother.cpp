@@ -110,7 +110,7 @@ class Smoother final : public SlamFilter {
         solver_(SensorNoise::of(setup.belief)) {}
 
   void start(const Pose& start) override {
-    belief_.start(start);
+    belief_.start({.pose = {start}});
     motion_.restart();
     graph_.start(start);
     estimate_.clear();

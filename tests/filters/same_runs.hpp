@@ -52,7 +52,7 @@ inline void expect_same_run(SlamFilter& one, SlamFilter& other, const SmallWorld
 /// Two makes of one filter say the same after every step, between scans as well.
 inline void expect_same_steps(SlamFilter& one, SlamFilter& other, const SmallWorld& world,
                               double tolerance, const Pose& start = {}) {
-  one.start(start), other.start(start);
+  start_in(world, start, one), start_in(world, start, other);
   for (std::uint32_t step = 0, scan = 0; step < world.itinerary.steps(); ++step) {
     const StepContext context(world.seed, 0, step, Parallel::serial());
     for (SlamFilter* filter : {&one, &other}) {

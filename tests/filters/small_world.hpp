@@ -11,7 +11,9 @@
 #include "filters/setup/filter_setup.hpp"
 
 #include <cmath>
+#include <concepts>
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <string>
@@ -64,6 +66,12 @@ inline FilterSetup setup_for(const FilterKind& kind, const SmallWorldSettings& w
           .association = {.kind = association},
           .options = default_options(kind, others),
           .landmarks = world.landmarks};
+}
+/// The setup of a filter that is given the map.
+inline FilterSetup in_known_map(FilterSetup setup) {
+  setup.map_is_known = true;
+  setup.association.new_gate = std::numeric_limits<double>::infinity();
+  return setup;
 }
 inline std::unique_ptr<SlamFilter> make_filter(const FilterKind& kind,
                                                const SmallWorldSettings& world,
@@ -130,11 +138,42 @@ inline SmallWorld small_world(const SmallWorldSettings& settings) {
   return world;
 }
 
+/// The same drive, with a filter that knows map and start with these deviations. Its errors are
+/// drawn.
+inline SmallWorld in_known_map(SmallWorld world, const PriorDeviations& deviations) {
+  const auto error = [&](Draw purpose, std::uint32_t index, double deviation) {
+    RngStream draw({world.seed, 0, 0, index, purpose});
+    const double x = draw.normal(), y = draw.normal();
+    return Eigen::Vector3d(deviation * x, deviation * y, draw.normal());
+  };
+  const Eigen::Vector3d e = error(Draw::world_start, 0, deviations.position);
+  const Pose& start = world.itinerary.start;
+  Prior prior{.pose = {{start.x - e(0), start.y - e(1), start.heading - deviations.heading * e(2)},
+                       deviations.start_covariance()}};
+  for (std::uint32_t k = 0; k < world.itinerary.landmarks.size(); ++k) {
+    prior.map.push_back(
+        {world.itinerary.landmarks[k] - error(Draw::world_survey, k, deviations.landmark).head<2>(),
+         deviations.landmark_covariance()});
+  }
+  world.drive.prior = prior;
+  return world;
+}
+
 /// `pose` in a world that is turned about the origin by the heading of `start` and shifted to it.
 inline Pose turned(const Pose& pose, const Pose& start) {
   const Direction<double> turn = direction_of(start.heading);
   return {start.x + turn.cosine * pose.x - turn.sine * pose.y,
           start.y + turn.sine * pose.x + turn.cosine * pose.y, wrap(pose.heading + start.heading)};
+}
+
+/// The same prior in a world that is turned in this way. Covariances must not depend on directions.
+inline Prior turned(Prior prior, const Pose& start) {
+  prior.pose.mean = turned(prior.pose.mean, start);
+  for (LandmarkEstimate& known : prior.map) {
+    const Pose place = turned(Pose{known.mean.x(), known.mean.y(), 0.0}, start);
+    known.mean = {place.x, place.y};
+  }
+  return prior;
 }
 
 /// The same drive in a world that is turned about the origin by the heading of `start` and shifted
@@ -146,7 +185,19 @@ inline SmallWorld turned(const SmallWorld& world, const Pose& start) {
     f = {place.x, place.y};
   }
   other.itinerary.start = start;
+  if (world.drive.prior) other.drive.prior = turned(*world.drive.prior, start);
   return other;
+}
+
+/// Starts `filter` from the prior of the world or, if there is none, at `start`.
+template <class Filter>
+void start_in(const SmallWorld& world, const Pose& start, Filter& filter,
+              const Parallel& parallel = Parallel::serial()) {
+  if constexpr (std::derived_from<Filter, SlamFilter>) {
+    const StepContext context(world.seed, 0, 0, parallel);
+    if (world.drive.prior) return filter.start_from(context, *world.drive.prior);
+  }
+  filter.start(start);
 }
 
 /// Drives `filter` through the world as the engine does; calls after_scan(scan number) behind every
@@ -154,7 +205,7 @@ inline SmallWorld turned(const SmallWorld& world, const Pose& start) {
 template <class Filter, class AfterScan>
 void drive_through(Filter& filter, const SmallWorld& world, const Pose& start,
                    const AfterScan& after_scan, const Parallel& parallel = Parallel::serial()) {
-  filter.start(start);
+  start_in(world, start, filter, parallel);
   std::size_t scan = 0;
   for (std::size_t step = 0; step < world.itinerary.steps(); ++step) {
     const StepContext context(world.seed, 0, static_cast<std::uint32_t>(step), parallel);

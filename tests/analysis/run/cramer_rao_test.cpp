@@ -64,7 +64,9 @@ struct Trajectory {
   const std::vector<Control>* controls;
   std::size_t every;
   Pose end(const Eigen::VectorXd& unknown, std::vector<double>* observations) const {
-    Pose pose;
+    const Eigen::Vector3d start =
+        world->prior ? Eigen::Vector3d(unknown.tail<3>()) : Eigen::Vector3d::Zero();
+    Pose pose{start(0), start(1), start(2)};
     const auto n = static_cast<Eigen::Index>(controls->size());
     for (Eigen::Index k = 0; k < n; ++k) {
       const Control& control = (*controls)[static_cast<std::size_t>(k)];
@@ -87,7 +89,8 @@ struct Trajectory {
 Eigen::Matrix3d reference(const SimulatedWorld& world, const Landmarks& landmarks,
                           const std::vector<Control>& controls, std::size_t every) {
   const Trajectory trajectory{&world, &landmarks, &controls, every};
-  const auto n = static_cast<Eigen::Index>(2 * (controls.size() + landmarks.size()));
+  const auto n =
+      static_cast<Eigen::Index>(2 * (controls.size() + landmarks.size()) + (world.prior ? 3 : 0));
   std::vector<double> once;
   trajectory.end(Eigen::VectorXd::Zero(n), &once);
   Eigen::MatrixXd H(once.size(), n);
@@ -110,6 +113,11 @@ Eigen::Matrix3d reference(const SimulatedWorld& world, const Landmarks& landmark
       const double sigma = deviations[static_cast<std::size_t>(c)];
       information(i, i) += 1.0 / (sigma * sigma);
     }
+  }
+  if (world.prior) {
+    const Eigen::Index l = 2 * static_cast<Eigen::Index>(controls.size()), m = n - 3 - l;
+    information.diagonal().segment(l, m).array() += std::pow(world.prior->landmark, -2);
+    information.diagonal().tail<3>() += world.prior->start_covariance().diagonal().cwiseInverse();
   }
   return G * information.ldlt().solve(G.transpose());
 }
@@ -150,6 +158,17 @@ TEST(CramerRaoBound, IsThatOfEverySensorWhereverItIsMounted) {
     const bool fixes = fixes_landmark(sensor);
     expect_information_of_trajectory(world, fixes ? 0 : 3, fixes ? 1e-5 : 3e-3);
   }
+}
+
+TEST(CramerRaoBound, IsThatOfALocalisationInAKnownMap) {
+  SimulatedWorld world = open_world();
+  world.prior = {.position = 0.3, .heading = 0.05, .landmark = 0.2};
+  expect_information_of_trajectory(world);
+  const TruePath path = path_of(bends(24), 4, kAhead);
+  const double some = squared_bound(world, path).map;
+  EXPECT_LT(some, 2 * 0.2 * 0.2);
+  world.prior->landmark = 0.0;
+  EXPECT_TRUE(std::isnan(squared_bound(world, path).map)) << "an exact map has no error";
 }
 
 // On a straight line towards its only landmark, with an error of the speed alone, the problem is

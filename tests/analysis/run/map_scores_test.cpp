@@ -87,24 +87,26 @@ struct WrongMaps {
 
 TEST(MapErrors, FindAConsistentMapInsideItsBounds) {
   const WrongMaps consistent(400, 1.0);
-  const MapErrors errors = consistent.sums.result(0.95, true);
+  const MapErrors errors = consistent.sums.result(0.95, {.known = true});
   const Summary nees = consistent.nees.result();
   EXPECT_EQ(errors.missing, "");
   EXPECT_NEAR(nees.mean, 2.0, 5.0 * nees.standard_error());
   EXPECT_NEAR(consistent.rms.result().mean, std::sqrt(0.5), 0.05);
   EXPECT_EQ(errors.landmarks[0].runs, 400u);
   EXPECT_EQ(errors.share_inside(), 1.0);
-  EXPECT_EQ(WrongMaps(400, 2.0).sums.result(0.95, true).share_inside(), 0.0);
+  EXPECT_EQ(WrongMaps(400, 2.0).sums.result(0.95, {.known = true}).share_inside(), 0.0);
 }
 
 TEST(MapErrors, SayWhyThereAreNone) {
   MapErrorSums sums;
-  EXPECT_THAT(sums.result(0.95, true).missing, HasSubstr("no run is complete"));
+  EXPECT_THAT(sums.result(0.95, {.known = true}).missing, HasSubstr("no run is complete"));
   sums.add(std::nullopt);
-  EXPECT_THAT(sums.result(0.95, true).missing, HasSubstr("add final_map to record.columns"));
-  EXPECT_THAT(sums.result(0.95, false).missing, HasSubstr("nobody knows"));
+  EXPECT_THAT(sums.result(0.95, {.known = true}).missing,
+              HasSubstr("add final_map to record.columns"));
+  EXPECT_THAT(sums.result(0.95, {.known = false}).missing, HasSubstr("nobody knows"));
   sums.add(map_scores(map_of({1, 0, 0}, kWorld), kCriteria, kWorld, kPath));
-  EXPECT_THAT(sums.result(0.95, true).missing, HasSubstr("the maps of 1 runs are not whole"));
+  EXPECT_THAT(sums.result(0.95, {.known = true}).missing,
+              HasSubstr("the maps of 1 runs are not whole"));
 }
 
 TEST(MapErrors, GiveEveryRunItsScores) {

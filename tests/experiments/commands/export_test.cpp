@@ -81,6 +81,27 @@ TEST_F(Export, AnEstimatorSeesNoTruth) {
   EXPECT_THAT(text_of("drives/belief.ini"), Not(HasSubstr("landmark =")));
 }
 
+TEST_F(Export, AnEstimatorIsGivenAKnownMapAndStartWithTheirErrors) {
+  const std::vector<std::string> overrides = {"belief.map=known", "scenario.map_sigma_m=0.5",
+                                              "scenario.start_sigma_m=2", "cells.cell=ekf_slam"};
+  std::vector<std::string> words = {"--runs", "1:2"};
+  for (const std::string& setting : overrides) words.insert(words.end(), {"--set", setting});
+  ASSERT_EQ(run_export(words).code, 0);
+  const Study study = read_study(folder_ / "blink.ini", overrides);
+  Drive drive;
+  drives_of(study, study.settings.count("study", "seed"))->generate(1, drive);
+  std::filesystem::copy(folder_ / "drives/truth/run_0001/reference.csv",
+                        folder_ / "drives/runs/run_0001/reference.csv");
+  const DriveLog given = read_log_csv(folder_ / "drives/runs/run_0001");
+  EXPECT_EQ(boxminus(given.start, drive.prior->pose.mean).norm(), 0.0);
+  ASSERT_EQ(given.landmarks.size(), study.world.landmarks.size());
+  for (std::size_t k = 0; k < given.landmarks.size(); ++k) {
+    EXPECT_EQ(given.landmarks[k], drive.prior->map[k].mean);
+    EXPECT_NE(given.landmarks[k], study.world.landmarks[k]);
+  }
+  EXPECT_THAT(text_of("drives/belief.ini"), HasSubstr("map = known\nmap_sigma_m = 0.5\n"));
+}
+
 TEST_F(Export, WrongInputIsNamed) {
   ASSERT_EQ(run_export().code, 0);
   expect_refused({"export", "blink.ini", "-o", "drives"}, "drives: not a new folder");

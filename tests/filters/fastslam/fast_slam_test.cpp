@@ -16,6 +16,19 @@ TEST_P(FastSlams, EqualsThePlainFilter) {
   expect_same_run(*lanes, *plain, small_world(settings), 1e-8);
 }
 
+TEST_P(FastSlams, EqualsThePlainFilterInAKnownMap) {
+  const SmallWorldSettings settings;
+  const FilterSetup setup = in_known_map(setup_of(GetParam(), settings));
+  for (const double landmark : {0.0, 0.1}) {
+    SCOPED_TRACE(landmark);
+    const auto lanes = kind_of(GetParam()).make(setup);
+    const auto plain = kind_of({"plain_" + GetParam().filter}).make(setup);
+    const SmallWorld world = in_known_map(small_world(settings),
+                                          {.position = 0.2, .heading = 0.05, .landmark = landmark});
+    expect_same_run(*lanes, *plain, world, 1e-8);
+  }
+}
+
 TEST_P(FastSlams, EstimatesBetweenScansAsThePlainFilterDoes) {
   const SmallWorldSettings settings{.scans = 12};
   const auto lanes = make_production(GetParam(), settings);

@@ -26,6 +26,22 @@ Belief linear_belief() {
 /// The Kalman filter over the place of the vehicle and the landmarks that it has seen.
 class KalmanFilter {
  public:
+  KalmanFilter() = default;
+  /// Starts from a known map.
+  explicit KalmanFilter(const Prior& prior) {
+    const auto n = static_cast<Eigen::Index>(2 + 2 * prior.map.size());
+    mean.resize(n);
+    covariance.setZero(n, n);
+    mean.head<2>() = place_of(prior.pose.mean);
+    covariance.topLeftCorner<2, 2>() = prior.pose.covariance.topLeftCorner<2, 2>();
+    for (const auto& [place, P] : prior.map) {
+      const auto row = static_cast<Eigen::Index>(2 + 2 * identities_.size());
+      mean.segment<2>(row) = place;
+      covariance.block<2, 2>(row, row) = P;
+      identities_.push_back(static_cast<std::int32_t>(identities_.size()));
+    }
+  }
+
   void move(const Belief& belief) {
     for (Eigen::Index i = 0; i < 2; ++i) {
       const auto component = static_cast<std::size_t>(i);
@@ -68,27 +84,42 @@ class KalmanFilter {
 
 class OnALinearModel : public testing::TestWithParam<std::pair<FilterKind, const char*>> {};
 
-TEST_P(OnALinearModel, EkfEqualsKalman) {
-  const auto& [kind, iterations] = GetParam();
-  const Belief belief = linear_belief();
-  const SmallWorld world = small_world({.scans = 30, .noise = belief, .controls = {kStraight}});
-  const auto filter = kind.make({.belief = belief,
-                                 .association = {},
-                                 .options = default_options(kind, {{"iterations", iterations}}),
-                                 .landmarks = 20});
-  KalmanFilter kalman;
+/// Drives both through the world and compares their poses after every scan.
+void expect_kalman(SlamFilter& filter, KalmanFilter kalman, const SmallWorld& world,
+                   const Belief& belief) {
   double dof = 0.0;
-  drive_through(*filter, world, {}, [&](std::size_t scan) {
+  drive_through(filter, world, {}, [&](std::size_t scan) {
     for (int step = 0; step < 8; ++step) kalman.move(belief);
     for (const Detection& detection : world.drive.scan(scan)) kalman.see(detection, belief);
-    const PoseMoments now = filter->estimate().spread;
+    const PoseMoments now = filter.estimate().spread;
     EXPECT_NEAR(now.mean.x, kalman.mean(0), 1e-10) << "scan " << scan;
     EXPECT_NEAR(now.mean.y, kalman.mean(1), 1e-10) << "scan " << scan;
     const Eigen::Matrix2d P = now.covariance.topLeftCorner<2, 2>();
     EXPECT_LT((P - kalman.covariance.topLeftCorner<2, 2>()).norm(), 1e-11) << "scan " << scan;
-    dof += filter->report().nis_dof;
+    dof += filter.report().nis_dof;
   });
   EXPECT_GT(dof, 100.0);
+}
+
+TEST_P(OnALinearModel, EkfEqualsKalman) {
+  const auto& [kind, iterations] = GetParam();
+  const SmallWorldSettings settings{.scans = 30, .noise = linear_belief(), .controls = {kStraight}};
+  const auto filter = make_filter(kind, settings, {{"iterations", iterations}});
+  expect_kalman(*filter, KalmanFilter(), small_world(settings), settings.noise);
+}
+
+TEST_P(OnALinearModel, LocalisationEqualsKalman) {
+  const auto& [kind, iterations] = GetParam();
+  if (!kind.takes_prior) GTEST_SKIP() << "it cannot be given a map";
+  const SmallWorldSettings settings{.scans = 30, .noise = linear_belief(), .controls = {kStraight}};
+  for (const double landmark : {0.0, 0.3}) {
+    SCOPED_TRACE(landmark);
+    const SmallWorld world =
+        in_known_map(small_world(settings), {.position = 0.7, .landmark = landmark});
+    const auto filter =
+        kind.make(in_known_map(setup_for(kind, settings, {{"iterations", iterations}})));
+    expect_kalman(*filter, KalmanFilter(*world.drive.prior), world, settings.noise);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <barrier>
 #include <ostream>
 #include <vector>
@@ -21,6 +22,13 @@ inline std::vector<FilterKind> filters_held_to_laws() {
   const auto added = added_filter_kinds();
   const auto kinds = added.empty() ? filter_kinds() : added;
   return {kinds.begin(), kinds.end()};
+}
+
+/// Returns whether a filter takes this sensor, as it is mounted.
+inline bool takes(const FilterKind& kind, const Sensor& sensor) {
+  if (kind.sensors.empty()) return true;
+  return sensor.mounting.is_none() &&
+         std::ranges::find(kind.sensors, name_of(sensor)) != kind.sensors.end();
 }
 
 /// Returns when all threads are awake, so that they share the next loop.

@@ -25,12 +25,6 @@ struct Offered {
 };
 void PrintTo(const Offered& offered, std::ostream* out) { *out << offered.name(); }
 
-bool takes(const FilterKind& kind, const Sensor& sensor) {
-  if (kind.sensors.empty()) return true;
-  return sensor.mounting.is_none() &&
-         std::ranges::find(kind.sensors, name_of(sensor)) != kind.sensors.end();
-}
-
 /// Each sensor but the default at the pose, of which other tests are full.
 std::vector<Offered> all_offered() {
   std::vector<Offered> all;

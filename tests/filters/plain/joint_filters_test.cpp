@@ -21,10 +21,14 @@ const Pose kStart{4.0, -3.0, 0.5};
 /// So much noise on the bearing that the joint filters part.
 Belief rough() { return {.control = {.sigma = {0.3, 0.1}}, .sigma_bearing = 0.05}; }
 
+const FilterKind& kind_named(const std::string& name) {
+  return *std::ranges::find(filter_kinds(), name, &FilterKind::name);
+}
 std::unique_ptr<SlamFilter> named(const std::string& name, const SmallWorldSettings& settings,
-                                  Association association) {
-  const auto kind = std::ranges::find(filter_kinds(), name, &FilterKind::name);
-  return make_filter(*kind, settings, {}, association);
+                                  Association association, const SmallWorld& world) {
+  const FilterKind& kind = kind_named(name);
+  const FilterSetup setup = setup_for(kind, settings, {}, association);
+  return kind.make(world.drive.prior ? in_known_map(setup) : setup);
 }
 
 /// Covariances agree relative to their size.
@@ -59,11 +63,14 @@ class PlainJointFilter : public testing::TestWithParam<std::string> {
   /// Drives both through the world, compares what they report at every step, and returns them.
   static Pair compared(const SmallWorldSettings& settings,
                        Association association = Association::known) {
-    const SmallWorld world = small_world(settings);
-    Pair both{named("plain_" + GetParam(), settings, association),
-              named(GetParam(), settings, association)};
+    return compared(settings, association, small_world(settings));
+  }
+  static Pair compared(const SmallWorldSettings& settings, Association association,
+                       const SmallWorld& world) {
+    Pair both{named("plain_" + GetParam(), settings, association, world),
+              named(GetParam(), settings, association, world)};
     const auto& [plain, fast] = both;
-    plain->start(kStart), fast->start(kStart);
+    start_in(world, kStart, *plain), start_in(world, kStart, *fast);
     std::uint32_t scan = 0, compared_dof = 0;
     for (std::uint32_t step = 0; step < world.itinerary.steps(); ++step) {
       SCOPED_TRACE(testing::Message() << "step " << step);
@@ -95,6 +102,19 @@ TEST_P(PlainJointFilter, EqualsTheFastFilterThatAssociatesNearestNeighbours) {
   const SmallWorldSettings settings{.seed = 6, .landmarks = 21, .scans = 300};
   const auto both = compared(settings, Association::nearest);
   EXPECT_GE(both.fast->report().map_size, 21.0);
+}
+
+TEST_P(PlainJointFilter, EqualsTheFastFilterInAKnownMap) {
+  if (!kind_named(GetParam()).takes_prior) GTEST_SKIP() << "it cannot be given a map";
+  const SmallWorldSettings settings{.seed = 9, .scans = 100, .noise = rough()};
+  for (const auto association : {Association::known, Association::nearest}) {
+    for (const double landmark : {0.0, 0.3}) {
+      SCOPED_TRACE(landmark);
+      compared(settings, association,
+               in_known_map(small_world(settings),
+                            {.position = 0.5, .heading = 0.2, .landmark = landmark}));
+    }
+  }
 }
 
 TEST_P(PlainJointFilter, EqualsTheFastFilterOfEveryVehicle) {

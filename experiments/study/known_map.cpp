@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/study/known_map.hpp"
+
+#include "engine/errors.hpp"
+#include "experiments/external/external_filter.hpp"
+#include "experiments/text/words.hpp"
+
+#include <vector>
+
+namespace montecarta::experiments {
+namespace {
+
+/// The filters that can be started from a known map, without the plain ones.
+std::string filters_with_prior() {
+  std::vector<std::string> names;
+  for (const FilterKind& kind : known_filters()) {
+    if (kind.takes_prior && !kind.name.starts_with("plain_")) names.push_back(kind.name);
+  }
+  return joined(names);
+}
+
+/// Throws StudyError if a true deviation is given that has no effect.
+void refuse_deviations(const Settings& settings) {
+  for (const char* key : {"map_sigma_m", "start_sigma_m", "start_sigma_deg"}) {
+    if (!settings.has("scenario", key) || settings.number("scenario", key) == 0.0) continue;
+    throw StudyError(settings.place("scenario", key) + ": scenario." + key + " = " +
+                     settings.text("scenario", key) +
+                     " with belief.map = estimated (a filter that estimates the map begins it at "
+                     "the start, which is exact by definition): set belief.map = known, or remove "
+                     "it");
+  }
+}
+
+}  // namespace
+
+bool map_is_known(const Settings& settings) { return settings.text("belief", "map") == "known"; }
+
+bool map_is_exact(const Settings& settings) {
+  return map_is_known(settings) && prior_deviations_of(settings, "belief").landmark == 0.0;
+}
+
+PriorDeviations prior_deviations_of(const Settings& settings, const std::string& in) {
+  if (!settings.has(in, "start_sigma_m")) return {};
+  return {.position = settings.number(in, "start_sigma_m"),
+          .heading = settings.radians(in, "start_sigma_deg"),
+          .landmark = settings.number(in, "map_sigma_m")};
+}
+
+void refuse_known_map(const Settings& settings, std::span<const CellSpec> cells,
+                      std::size_t landmarks) {
+  if (!map_is_known(settings)) return refuse_deviations(settings);
+  if (landmarks == 0) {
+    throw StudyError(settings.place("belief", "map") +
+                     ": belief.map = known (this drive has no landmarks.csv): add the surveyed "
+                     "landmarks, or set belief.map = estimated");
+  }
+  for (const CellSpec& cell : cells) {
+    if (cell.filter->takes_prior) continue;
+    throw StudyError(cell.place + ": " + cell.filter->name +
+                     " with belief.map = known (it cannot be started from a known map): use one "
+                     "of " +
+                     filters_with_prior() + ", or set belief.map = estimated");
+  }
+}
+
+}  // namespace montecarta::experiments
