@@ -155,7 +155,7 @@ Figure whiteness_figure(const StudyAnalysis& study) {
   for (Panel& panel : panels) panel.bands = white_bands(study);
   std::vector<double> lags(kInnovationLags);
   std::iota(lags.begin(), lags.end(), 1.0);
-  figure.chart.x_label = "scans apart";
+  figure.chart.x_label = "innovations apart";
   add_panels(panels, lags, figure);
   return figure;
 }
@@ -178,13 +178,19 @@ std::vector<std::string> largest_notes(const StudyAnalysis& study) {
   return notes;
 }
 
-/// Text of the components that are not white: "; gap has a correlation of 0.19 at lag 1, where 0.06
-/// would be white".
+/// Text of the components that are not white, or have a mean: "; gap has a correlation of 0.19 at
+/// lag 1, where 0.06 would be white".
 std::string correlated_words(const Innovations& found, const std::vector<std::string>& names) {
   std::string words;
   for (std::size_t k = 0; k < std::min(found.components.size(), names.size()); ++k) {
     const ComponentCorrelation& one = found.components[k];
-    if (one.is_white()) continue;
+    if (one.is_white()) {
+      if (found.whiteness() == Whiteness::white && one.has_bias()) {
+        words += "; " + names[k] + " has a mean of " + readable(one.mean, 2) + " +- " +
+                 readable(one.mean_bound, 2) + " deviations, where 0 is right";
+      }
+      continue;
+    }
     words += "; " + names[k] + " has a correlation of " + readable(one.correlation, 2) +
              " at lag " + std::to_string(one.lag) + ", where " + readable(one.bound, 2) +
              " would be white";

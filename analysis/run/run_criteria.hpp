@@ -36,7 +36,7 @@ struct RunCriteria {
   /// {scan} row of each scan; empty if rows are scans.
   std::span<const std::uint32_t> scan_rows = {};
   ErrorFrame frame = ErrorFrame::of_truth;
-  /// Number of components if the judged errors are innovations, which are white; else 0.
+  /// Number of components if the judged errors are innovations, whose whiteness is tested; else 0.
   std::size_t innovation_components = 0;
   bool has_own_scans = false;    ///< whether a cell has no estimate at scans of other cells
   bool by_upper_bounds = false;  ///< whether covariances are only bounds from above

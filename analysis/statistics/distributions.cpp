@@ -36,10 +36,10 @@ double chi_squared_beyond(double tail, double freedom) {
 }
 
 double chi_squared_before_gate(double value, double freedom, double most) {
-  constexpr double kLeastTail = 1e-12;  // of a value that is the gate itself
   const double beyond = chi_squared_tail(most, freedom);
-  const double tail = (chi_squared_tail(value, freedom) - beyond) / (1.0 - beyond);
-  return chi_squared_beyond(std::max(tail, kLeastTail), freedom);
+  const double inside = std::min(value, most * (1.0 - kRoundingOfGate));
+  const double tail = (chi_squared_tail(inside, freedom) - beyond) / (1.0 - beyond);
+  return chi_squared_beyond(tail, freedom);
 }
 
 double t_cdf(double t, double freedom) { return cdf(boost::math::students_t(freedom), t); }

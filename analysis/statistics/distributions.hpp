@@ -16,8 +16,12 @@ double chi_squared_quantile(double probability, double freedom);
 /// The value that a chi-square variable exceeds with probability `tail`.
 double chi_squared_beyond(double tail, double freedom);
 
+/// A value may be beyond its gate by this share of it, and is then at the gate.
+inline constexpr double kRoundingOfGate = 1e-6;
+
 /// The value that has the probability among all chi-square variables which `value` has among those
-/// up to `most`, as a gate lets them pass.
+/// up to `most`, as a gate lets them pass. At the gate itself it is that of a value which rounding
+/// cannot tell from it.
 double chi_squared_before_gate(double value, double freedom, double most);
 
 /// Probability that Student's t is at most `t`.

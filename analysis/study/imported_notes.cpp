@@ -14,8 +14,7 @@ namespace {
 std::string sentence_on(const std::string& state, const std::string& convention) {
   if (convention == "body") return "in the frame of the estimate";
   if (convention == "world-body")
-    return "estimate minus truth in the frame of the map, and of the rotation in that of the "
-           "estimate";
+    return "position in the frame of the map, rotation in that of the estimate";
   if (convention == "right-invariant")
     return "right-invariant: the logarithm of mean times inverse truth";
   return state == "vector" ? "estimate minus truth"

@@ -19,6 +19,10 @@ constexpr std::size_t kLagsTogether = 24;
 
 static_assert(kInnovationLags < kLagsTogether);
 
+/// Components count with at most so many deviations, so that no single one hides how the others go
+/// together.
+constexpr double kFarthest = 5.0;
+
 /// The number of standard deviations that white innovations exceed at none of `lags` lags (Sidak).
 double white_deviate(std::size_t lags, double level) {
   const double each = std::pow(level, 1.0 / static_cast<double>(lags));
@@ -73,10 +77,9 @@ std::size_t LaggedProducts::lags(std::uint64_t runs) const {
 }
 
 double LaggedProducts::correlation(std::size_t lag) const {
-  const double mean = products_[0].both / (2.0 * products_[0].n);
-  const double power = products_[0].mean_product(mean);
+  const double power = products_[0].mean_product(mean());
   if (products_[lag].n == 0.0 || !(power > 0.0)) return kNaN;
-  return products_[lag].mean_product(mean) / power;
+  return products_[lag].mean_product(mean()) / power;
 }
 
 InnovationSums::Totals::Totals(std::size_t scans) : nis_(scans), products_(scans) {}
@@ -100,7 +103,9 @@ void InnovationSums::add(std::uint64_t run, std::span<const double> times,
   const std::size_t d = components_.size();
   std::vector<double> component(standardised.empty() ? 0 : nis.size());
   for (std::size_t k = 0; k < d && !standardised.empty(); ++k) {
-    for (std::size_t s = 0; s < component.size(); ++s) component[s] = standardised[s * d + k];
+    for (std::size_t s = 0; s < component.size(); ++s) {
+      component[s] = std::clamp(standardised[s * d + k], -kFarthest, kFarthest);
+    }
     components_[k].add(component);
   }
   std::optional<LargestRun> next;
@@ -146,7 +151,7 @@ Innovations InnovationSums::result(std::span<const double> times, double level,
                     .run = largest_->run,
                     .time = largest_->time,
                     .ratio_without = rest.ratio,
-                    .whiteness_without = rest.whiteness(),
+                    .whiteness_without = rest.whiteness_of_nis(),
                     .answer_without = rest.verdict.answer};
   return result;
 }
@@ -155,6 +160,8 @@ std::vector<ComponentCorrelation> InnovationSums::correlated_components(std::uin
                                                                         double level) const {
   std::vector<ComponentCorrelation> all(components_.size());
   for (std::size_t k = 0; k < all.size(); ++k) {
+    all[k].mean = components_[k].mean();
+    all[k].mean_bound = white_deviate(all.size(), level) / std::sqrt(components_[k].pairs(0));
     const std::size_t lags = components_[k].lags(runs);
     for (std::size_t lag = 1; lag <= lags; ++lag) {
       const ComponentCorrelation one{.lag = lag,
@@ -162,7 +169,10 @@ std::vector<ComponentCorrelation> InnovationSums::correlated_components(std::uin
                                      .bound = white_deviate(lags * (1 + all.size()), level) /
                                               std::sqrt(components_[k].pairs(lag))};
       const double distance = std::abs(one.correlation) / one.bound;
-      if (all[k].lag == 0 || distance > std::abs(all[k].correlation) / all[k].bound) all[k] = one;
+      if (all[k].lag > 0 && distance <= std::abs(all[k].correlation) / all[k].bound) continue;
+      all[k].lag = one.lag;
+      all[k].correlation = one.correlation;
+      all[k].bound = one.bound;
     }
   }
   return all;
@@ -226,15 +236,19 @@ void InnovationSums::Totals::judge_size(std::span<const double> times, double le
 }
 
 Whiteness Innovations::whiteness() const {
+  const bool are_white = std::ranges::all_of(components, &ComponentCorrelation::is_white);
+  return are_white ? whiteness_of_nis() : Whiteness::not_white;
+}
+
+Whiteness Innovations::whiteness_of_nis() const {
   if (worst_lag == 0) return Whiteness::untested;
-  const bool is_white = std::abs(autocorrelation[worst_lag - 1]) <= white_bound[worst_lag - 1] &&
-                        std::ranges::all_of(components, &ComponentCorrelation::is_white);
+  const bool is_white = std::abs(autocorrelation[worst_lag - 1]) <= white_bound[worst_lag - 1];
   return is_white ? Whiteness::white : Whiteness::not_white;
 }
 
 bool Innovations::are_decided_by_largest() const {
   if (std::isnan(largest.ratio_without)) return false;
-  return whiteness() != largest.whiteness_without ||
+  return whiteness_of_nis() != largest.whiteness_without ||
          is_off(verdict.answer) != is_off(largest.answer_without);
 }
 

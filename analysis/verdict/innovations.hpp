@@ -50,7 +50,11 @@ struct ComponentCorrelation {
   std::size_t lag = 0;  ///< 0 if none is tested
   double correlation = kNaN;
   double bound = kNaN;
+  /// The mean over all runs and scans, and the distance from 0 that white innovations do not exceed
+  /// in any component.
+  double mean = kNaN, mean_bound = kNaN;
   bool is_white() const { return lag == 0 || std::abs(correlation) <= bound; }
+  bool has_bias() const { return std::abs(mean) > mean_bound; }
 };
 
 /// Test of the NIS, which needs no truth. For a consistent filter its expectation is 1 for each
@@ -80,6 +84,8 @@ struct Innovations {
   std::vector<ComponentCorrelation> components;
 
   Whiteness whiteness() const;
+  /// By the NIS alone, without the components.
+  Whiteness whiteness_of_nis() const;
   /// Returns whether the largest innovation decides a finding: without it the whiteness is another
   /// one, or only with it or only without it the size is shown to be off.
   bool are_decided_by_largest() const;
@@ -117,6 +123,7 @@ class LaggedProducts {
   void add(std::span<const double> numbers);
   /// Largest lag that is tested if `runs` runs were added: at most a quarter of their numbers.
   std::size_t lags(std::uint64_t runs) const;
+  double mean() const { return products_[0].both / (2.0 * products_[0].n); }
   /// Number of pairs at a lag, and their correlation; NaN if there is none.
   double pairs(std::size_t lag) const { return products_[lag].n; }
   double correlation(std::size_t lag) const;

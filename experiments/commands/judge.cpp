@@ -74,9 +74,9 @@ JudgingOptions judging_options(const Arguments& arguments) {
   options.equal_times = equal_times_of(arguments);
   if (const auto name = arguments.text("anchor")) options.anchor = anchor_named(*name);
   options.adds_truth_covariance = arguments.has("truth-cov");
+  if (const auto gate = arguments.text("gate")) options.gate.emplace(*gate);
   if (const auto windows = arguments.text("windows")) options.windows = windows_in(*windows);
   options.are_innovations = arguments.has("innovations");
-  options.gate = arguments.number("gate", 0.01, 1e6);
   if (const auto names = arguments.text("components")) options.components = split(*names, ',');
   options.existing = arguments.has("force") ? Existing::replace : Existing::refuse;
   options.provenance = provenance_of("judge", arguments);
@@ -86,7 +86,8 @@ JudgingOptions judging_options(const Arguments& arguments) {
 
 /// What the files of estimates have in place of a truth, if none is named.
 OwnTruth own_truth_of(const std::string& estimates, const std::vector<std::string>& truths) {
-  const OwnTruth found = own_truth_in(CsvRows(estimates).columns());
+  const CsvRows file(estimates);
+  const OwnTruth found = own_truth_in(file.columns(), file.place());
   if (truths.empty() && found == OwnTruth::none) {
     throw StudyError(
         "judge: --truth PATH... is missing (an error is estimate minus truth): name "
@@ -116,7 +117,8 @@ std::unique_ptr<EstimateSource> arrays_of(const Arguments& arguments) {
     throw StudyError(operands[1] + ": one file of arrays is judged at a time (it has all runs): " +
                      "judge the files apart");
   }
-  constexpr std::array<std::string_view, 4> kOfFiles = {"truth", "keep", "pair", "truth-cov"};
+  constexpr std::array<std::string_view, 8> kOfFiles = {
+      "truth", "keep", "pair", "truth-cov", "innovations", "gate", "interpolate", "longest-gap"};
   refuse_options(arguments, kOfFiles,
                  operands.front() + " (arrays have all of their numbers in the file)");
   const std::string stem = std::filesystem::path(operands.front()).stem().string();
@@ -131,8 +133,9 @@ std::unique_ptr<EstimateSource> arrays_of(const Arguments& arguments) {
 
 std::unique_ptr<EstimateSource> innovations_of(const Arguments& arguments,
                                                const JudgingOptions& options) {
-  constexpr std::array<std::string_view, 8> kOfStates = {
-      "truth", "error", "pair", "anchor", "truth-cov", "interpolate", "longest-gap", "components"};
+  constexpr std::array<std::string_view, 10> kOfStates = {
+      "truth",       "error",       "pair",       "anchor", "truth-cov",
+      "interpolate", "longest-gap", "components", "keep",   "tolerance"};
   refuse_options(arguments, kOfStates, "--innovations (innovations need no truth and no state)");
   return std::make_unique<InnovationFiles>(
       pair_files(arguments.operands(), {}, arguments.text("cell")), options.gate);
@@ -179,6 +182,16 @@ std::unique_ptr<EstimateSource> source_of(const Arguments& arguments, JudgingOpt
   if (arguments.has("pair")) return pair_of(arguments, how, options.pair);
   const std::vector<std::string> truths = arguments.texts("truth");
   how.own_truth = own_truth_of(operands.front(), truths);
+  if (how.own_truth == OwnTruth::errors) {
+    constexpr std::array<std::string_view, 4> kOfTruths = {"error", "anchor", "truth-cov",
+                                                           "windows"};
+    refuse_options(arguments, kOfTruths, operands.front() + " (it has errors, and no states)");
+  }
+  if (options.anchor && options.adds_truth_covariance) {
+    throw StudyError(
+        "--truth-cov: not beside --anchor (the truth's error at the anchor would be in "
+        "every row): leave one of them out");
+  }
   how.truth_covariance = options.adds_truth_covariance;
   return std::make_unique<EstimateFiles>(pair_files(operands, truths, arguments.text("cell")), how);
 }

@@ -389,8 +389,8 @@ def read_square(table, options):
         gauge = declared.get("GAUGE", "fixed")
         if gauge != "fixed":
             notes.append(f"GAUGE {gauge}: " + (
-                "move the truth onto the first estimate by --align yaw" if gauge == "gravity_yaw"
-                else "the truth must be moved onto the first estimate, in more than --align yaw"))
+                "judge it with --anchor yaw" if gauge == "gravity_yaw"
+                else "the truth must be moved onto the first estimate: see judge --anchor"))
     return Run(table.path, "SQUARE, since its first lines declare it", POSE_COLUMNS, table.places,
                times, poses, P, notes)
 

@@ -25,9 +25,7 @@ constexpr std::array kAnchors = {NamedAnchor{Anchor::first, "first", "position"}
 const NamedAnchor& named(Anchor anchor) { return kAnchors.at(static_cast<std::size_t>(anchor)); }
 
 Eigen::Quaterniond rotation_of(const StateShape& shape, const Eigen::VectorXd& state) {
-  if (shape.kind == StateKind::pose_in_space) {
-    return Eigen::Quaterniond(Eigen::Vector4d(state.segment<4>(kQuaternionPlace)));
-  }
+  if (shape.kind == StateKind::pose_in_space) return quaternion_in(state);
   return Eigen::Quaterniond(Eigen::AngleAxisd(state(2), Eigen::Vector3d::UnitZ()));
 }
 
@@ -94,30 +92,33 @@ std::string name_of(Anchor anchor) { return named(anchor).name; }
 
 std::string moved_by(Anchor anchor) { return named(anchor).moved; }
 
-void move_to_anchor(Anchor anchor, const StateRows& estimates, const std::filesystem::path& path,
-                    std::vector<std::optional<TrueState>>& truths) {
+std::optional<std::size_t> move_to_anchor(Anchor anchor, const StateRows& estimates,
+                                          const std::filesystem::path& path,
+                                          std::vector<std::optional<TrueState>>& truths) {
   const StateShape& shape = estimates.shape;
   if (shape.kind == StateKind::vector) {
     throw StudyError(path.string() + ": --anchor " + name_of(anchor) +
                      " is for poses (this state is a vector, which has no frame): leave it out");
   }
   const auto first = std::ranges::find_if(truths, [](const auto& one) { return one.has_value(); });
-  if (first == truths.end()) return;
-  const Eigen::VectorXd& mean = estimates.state[static_cast<std::size_t>(first - truths.begin())];
+  if (first == truths.end()) return std::nullopt;
+  const auto row = static_cast<std::size_t>(first - truths.begin());
+  const Eigen::VectorXd& mean = estimates.state[row];
   const Motion motion = motion_to(anchor, shape, mean, (*first)->state);
   for (auto& truth : truths) {
     if (truth) truth->state = motion.moved(shape, truth->state);
   }
   first->reset();
+  return row;
 }
 
-double share_at_anchor(Anchor anchor, const StateRows& estimates) {
+double share_at_anchor(Anchor anchor, const StateRows& estimates, std::size_t row) {
+  constexpr double kLeastVariance = 1e-12;
   double most = 0.0;
-  if (estimates.covariance.empty()) return most;
   for (const Eigen::Index i : moved_components(anchor, estimates.shape)) {
-    const double first = estimates.covariance.front()(i, i);
+    const double first = estimates.covariance[row](i, i);
     const double last = estimates.covariance.back()(i, i);
-    if (last > 0.0) most = std::max(most, first / last);
+    if (first > kLeastVariance && last > 0.0) most = std::max(most, first / last);
   }
   return most;
 }

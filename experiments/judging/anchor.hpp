@@ -4,6 +4,7 @@
 #include "experiments/judging/state_rows.hpp"
 #include "experiments/judging/truth_path.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -28,13 +29,15 @@ std::string moved_by(Anchor anchor);
 
 /// Moves the truths {row} of a run by one motion of the map, by which the truth of the first
 /// estimate that has one gets its position (and heading, or rotation). This estimate has no error
-/// then: its truth becomes nullopt. Throws StudyError that begins with `path` if the state is no
-/// pose.
-void move_to_anchor(Anchor anchor, const StateRows& estimates, const std::filesystem::path& path,
-                    std::vector<std::optional<TrueState>>& truths);
+/// then: its truth becomes nullopt. Returns its row; nullopt if no estimate has a truth. Throws
+/// StudyError that begins with `path` if the state is no pose.
+std::optional<std::size_t> move_to_anchor(Anchor anchor, const StateRows& estimates,
+                                          const std::filesystem::path& path,
+                                          std::vector<std::optional<TrueState>>& truths);
 
-/// The largest share of the final variance that a component which the anchor moves already has at
-/// the first estimate. If it is large, the covariance describes more than the error since then.
-double share_at_anchor(Anchor anchor, const StateRows& estimates);
+/// The largest share of the final variance that a component which the anchor moves already has in
+/// the row of the anchor. If it is large, the covariance describes more than the error since then.
+/// Deviations up to 1e-6 m or rad count as 0.
+double share_at_anchor(Anchor anchor, const StateRows& estimates, std::size_t row);
 
 }  // namespace montecarta::experiments

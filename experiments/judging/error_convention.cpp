@@ -64,21 +64,17 @@ Eigen::Matrix3d exponential_jacobian_in_space(const Eigen::Vector3d& turn) {
   return Eigen::Matrix3d::Identity() + a * cross + b * cross * cross;
 }
 
-Eigen::Quaterniond quaternion_of(const Eigen::VectorXd& state) {
-  return Eigen::Quaterniond(Eigen::Vector4d(state.segment<4>(kQuaternionPlace)));
-}
-
 /// The errors of vectors in the map, of the position and the velocity, and of the rotation between
 /// an estimate and the truth.
 class ErrorsInSpace {
  public:
   ErrorsInSpace(Convention convention, const Eigen::VectorXd& mean, const Eigen::VectorXd& truth)
       : convention_(convention),
-        mean_(quaternion_of(mean)),
-        turned_(mean_ * quaternion_of(truth).conjugate()),
+        mean_(quaternion_in(mean)),
+        turned_(mean_ * quaternion_in(truth).conjugate()),
         turn_(rotation_vector(turned_)) {
     const bool is_in_body = convention == Convention::body || convention == Convention::world_body;
-    rotation_ = is_in_body ? rotation_vector(quaternion_of(truth).conjugate() * mean_) : turn_;
+    rotation_ = is_in_body ? rotation_vector(quaternion_in(truth).conjugate() * mean_) : turn_;
   }
 
   const Eigen::Vector3d& of_rotation() const { return rotation_; }

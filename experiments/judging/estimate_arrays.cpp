@@ -222,7 +222,7 @@ std::filesystem::path EstimateArrays::place(std::size_t /*cell*/, std::size_t ru
   return path_.string() + " (run " + std::to_string(run) + ", scan)";
 }
 
-std::filesystem::path EstimateArrays::truth_place(std::size_t run) const {
+std::filesystem::path EstimateArrays::truth_place(std::size_t /*cell*/, std::size_t run) const {
   return path_.string() + " (truth of run " + std::to_string(run) + ", scan)";
 }
 
@@ -250,9 +250,10 @@ StateRows EstimateArrays::estimates(std::size_t cell, std::size_t run) const {
   return rows;
 }
 
-StateRows EstimateArrays::truth(std::size_t run, const StateShape& /*shape*/) const {
+StateRows EstimateArrays::truth(std::size_t cell, std::size_t run,
+                                const StateShape& /*shape*/) const {
   if (truth_) {
-    StateRows rows = states_of(*truth_, run, truth_place(run));
+    StateRows rows = states_of(*truth_, run, truth_place(cell, run));
     if (!rows.time.empty()) return rows;
     refuse("truth", "of run " + std::to_string(run) + " is NaN at all scans: give true states");
   }

@@ -26,10 +26,11 @@ class EstimateArrays final : public EstimateSource {
   const std::vector<std::string>& cells() const override { return cells_; }
   const std::vector<std::uint64_t>& runs() const override { return runs_; }
   std::filesystem::path place(std::size_t cell, std::size_t run) const override;
-  std::filesystem::path truth_place(std::size_t run) const override;
+  std::filesystem::path truth_place(std::size_t cell, std::size_t run) const override;
   std::vector<double> times(std::size_t cell, std::size_t run) const override;
   StateRows estimates(std::size_t cell, std::size_t run) const override;
-  StateRows truth(std::size_t run, const StateShape& shape) const override;
+  StateRows truth(std::size_t cell, std::size_t run, const StateShape& shape) const override;
+  bool has_common_truths() const override { return truth_.has_value(); }
   bool has_errors() const override { return !truth_.has_value(); }
   TextPairs contents() const override;
   std::vector<std::string> notes() const override { return {}; }

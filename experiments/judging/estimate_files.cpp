@@ -42,14 +42,14 @@ StateRows EstimateFiles::estimates(std::size_t cell, std::size_t run) const {
   return rows;
 }
 
-StateRows EstimateFiles::truth(std::size_t run, const StateShape& shape) const {
+StateRows EstimateFiles::truth(std::size_t cell, std::size_t run, const StateShape& shape) const {
   if (!has_errors()) {
-    return read_truth(files_.truth[run], shape,
+    return read_truth(truth_place(cell, run), shape,
                       {.equal = how_.equal_times,
                        .with_covariance = how_.truth_covariance,
                        .prefix = how_.own_truth == OwnTruth::columns ? kTruthPrefix : ""});
   }
-  StateRows rows = read_estimates(files_.truth[run], how_.equal_times);
+  StateRows rows = read_estimates(place(cell, run), how_.equal_times);
   rows.covariance.clear();
   for (Eigen::VectorXd& error : rows.state) error.setZero();
   return rows;
@@ -58,7 +58,7 @@ StateRows EstimateFiles::truth(std::size_t run, const StateShape& shape) const {
 TextPairs EstimateFiles::contents() const {
   TextPairs all;
   if (!files_.names.empty()) all.emplace_back("names of runs", joined(files_.names));
-  all.emplace_back("truth_sha256", sha256_of(files_.truth));
+  if (has_common_truths()) all.emplace_back("truth_sha256", sha256_of(files_.truth));
   for (const EstimatorFiles& cell : files_.cells)
     all.emplace_back("sha256 of " + cell.cell, sha256_of(cell.of_run));
   return all;

@@ -26,10 +26,13 @@ class EstimateFiles : public EstimateSource {
   std::filesystem::path place(std::size_t cell, std::size_t run) const override {
     return files_.cells[cell].of_run[run];
   }
-  std::filesystem::path truth_place(std::size_t run) const override { return files_.truth[run]; }
+  std::filesystem::path truth_place(std::size_t cell, std::size_t run) const override {
+    return has_common_truths() ? files_.truth[run] : place(cell, run);
+  }
   std::vector<double> times(std::size_t cell, std::size_t run) const override;
   StateRows estimates(std::size_t cell, std::size_t run) const override;
-  StateRows truth(std::size_t run, const StateShape& shape) const override;
+  StateRows truth(std::size_t cell, std::size_t run, const StateShape& shape) const override;
+  bool has_common_truths() const override { return how_.own_truth == OwnTruth::none; }
   bool has_errors() const override { return how_.own_truth == OwnTruth::errors; }
   TextPairs contents() const override;
   std::vector<std::string> notes() const override;

@@ -25,14 +25,17 @@ class EstimateSource {
   virtual const std::vector<std::uint64_t>& runs() const = 0;
   /// Where the estimates of a run are, for messages.
   virtual std::filesystem::path place(std::size_t cell, std::size_t run) const = 0;
-  virtual std::filesystem::path truth_place(std::size_t run) const = 0;
+  virtual std::filesystem::path truth_place(std::size_t cell, std::size_t run) const = 0;
 
   /// {row} Times [s] of the estimates of a run.
   virtual std::vector<double> times(std::size_t cell, std::size_t run) const = 0;
   /// A state without components is that of innovations alone, which have no truth.
   virtual StateRows estimates(std::size_t cell, std::size_t run) const = 0;
-  /// The truth of a run, of states of this shape.
-  virtual StateRows truth(std::size_t run, const StateShape& shape) const = 0;
+  /// The truth of the estimates of a run, of states of this shape.
+  virtual StateRows truth(std::size_t cell, std::size_t run, const StateShape& shape) const = 0;
+  /// Whether all cells have the same truth of a run, which may go on after their estimates end.
+  /// Otherwise it is at the times of each cell's own.
+  virtual bool has_common_truths() const = 0;
   /// Whether states are errors already, so that no convention needs to be stated.
   virtual bool has_errors() const = 0;
 

@@ -34,7 +34,7 @@ class ImportedDrives final : public DriveSource {
 TextPairs import_settings(const StateShape& shape, const JudgingOptions& options) {
   if (shape.dimension() == 0) {
     TextPairs settings = {{"state", "innovations"}};
-    if (options.gate) settings.emplace_back("gate", to_text(*options.gate));
+    if (options.gate) settings.emplace_back("gate", options.gate->text());
     return settings;
   }
   std::vector<std::string> components, units;
@@ -48,7 +48,7 @@ TextPairs import_settings(const StateShape& shape, const JudgingOptions& options
                         {"error", name_of(*options.convention)},
                         {"components", joined(components)},
                         {"units", joined(units)}};
-  if (options.gate) settings.emplace_back("gate", to_text(*options.gate));
+  if (options.gate) settings.emplace_back("gate", options.gate->text());
   if (!options.windows.empty()) {
     std::vector<std::string> windows;
     for (const double window : options.windows) windows.push_back(to_text(window));

@@ -9,7 +9,6 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <set>
 #include <utility>
 
 namespace montecarta::experiments {
@@ -26,9 +25,16 @@ Eigen::Isometry3d pose_of(const StateShape& shape, const Eigen::VectorXd& state)
     return pose;
   }
   pose.translation() = state.head<3>();
-  const Eigen::Quaterniond turn(Eigen::Vector4d(state.segment<4>(kQuaternionPlace)));
-  pose.linear() = turn.toRotationMatrix();
+  pose.linear() = quaternion_in(state).toRotationMatrix();
   return pose;
+}
+
+/// The pose of the map, seen from `pose`.
+Eigen::Isometry3d reversed(const Eigen::Isometry3d& pose) {
+  Eigen::Isometry3d found = Eigen::Isometry3d::Identity();
+  found.linear() = pose.linear().transpose();
+  found.translation() = -(found.linear() * pose.translation());
+  return found;
 }
 
 /// The components of a pose among x, y, z, rx, ry, rz.
@@ -49,7 +55,7 @@ Matrix6 adjoint(const Eigen::Isometry3d& pose) {
 
 /// The matrix by which the error of a convention becomes that in the body, to first order.
 Matrix6 to_body(ErrorConvention convention, const Eigen::Isometry3d& mean) {
-  if (convention == ErrorConvention::right_invariant) return adjoint(mean.inverse());
+  if (convention == ErrorConvention::right_invariant) return adjoint(reversed(mean));
   Matrix6 found = Matrix6::Identity();
   if (convention == ErrorConvention::body) return found;
   found.topLeftCorner<3, 3>() = mean.linear().transpose();
@@ -94,11 +100,11 @@ void add_increment(const StateRows& poses, const std::vector<std::optional<TrueS
                                    .components = std::vector<std::string>(kPoseComponents),
                                    .units = {}};
   const auto pose = [&](const Eigen::VectorXd& state) { return pose_of(poses.shape, state); };
-  const Eigen::Isometry3d mean = pose(poses.state[from]).inverse() * pose(poses.state[to]);
-  const Eigen::Isometry3d truth = pose(truths[from]->state).inverse() * pose(truths[to]->state);
+  const Eigen::Isometry3d mean = reversed(pose(poses.state[from])) * pose(poses.state[to]);
+  const Eigen::Isometry3d truth = reversed(pose(truths[from]->state)) * pose(truths[to]->state);
   const Eigen::VectorXd error =
       error_of(space, ErrorConvention::body, state_of(mean), state_of(truth));
-  const Matrix6 carried = adjoint(mean.inverse());
+  const Matrix6 carried = adjoint(reversed(mean));
   const Matrix6 P = covariance_in_body(poses, to, convention) -
                     carried * covariance_in_body(poses, from, convention) * carried.transpose();
   const auto places = components_in_space(poses.shape);
@@ -155,21 +161,18 @@ std::vector<double> Increments::times(std::size_t cell, std::size_t run) const {
 
 StateRows Increments::estimates(std::size_t cell, std::size_t run) const {
   const StateRows poses = poses_->estimates(of_poses(cell), run);
-  const TruthPath truth(poses_->truth(run, poses.shape), poses_->truth_place(run), match_);
+  const TruthPath truth(poses_->truth(of_poses(cell), run, poses.shape), truth_place(cell, run),
+                        match_);
   use_ = {};  // what is said of one file is said of its last reading
   return increments_of(poses, truth.at(poses, place(cell, run), use_),
                        windows_[cell % windows_.size()], convention_);
 }
 
-StateRows Increments::truth(std::size_t run, const StateShape& shape) const {
-  std::set<double> all;
-  for (std::size_t c = 0; c < labels_.size(); ++c) {
-    const std::vector<double> some = times(c, run);
-    all.insert(some.begin(), some.end());
-  }
-  StateRows rows{.shape = shape, .time = {all.begin(), all.end()}};
-  rows.state.assign(all.size(), Eigen::VectorXd::Zero(static_cast<Eigen::Index>(shape.width())));
-  rows.line.resize(all.size());
+StateRows Increments::truth(std::size_t cell, std::size_t run, const StateShape& shape) const {
+  StateRows rows = estimates(cell, run);
+  rows.shape = shape;
+  rows.covariance.clear();
+  for (Eigen::VectorXd& error : rows.state) error.setZero();
   return rows;
 }
 

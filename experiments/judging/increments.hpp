@@ -22,15 +22,16 @@ class Increments final : public EstimateSource {
   const std::vector<std::string>& cells() const override { return labels_; }
   const std::vector<std::uint64_t>& runs() const override { return poses_->runs(); }
   std::filesystem::path place(std::size_t cell, std::size_t run) const override;
-  std::filesystem::path truth_place(std::size_t run) const override {
-    return poses_->truth_place(run);
+  std::filesystem::path truth_place(std::size_t cell, std::size_t run) const override {
+    return poses_->truth_place(of_poses(cell), run);
   }
   /// {window} Times at which windows end.
   std::vector<double> times(std::size_t cell, std::size_t run) const override;
   /// Errors {window}{d} of a vector with the components of the pose.
   StateRows estimates(std::size_t cell, std::size_t run) const override;
-  /// Zeros at all times at which windows end.
-  StateRows truth(std::size_t run, const StateShape& shape) const override;
+  /// Zeros at the times at which windows end.
+  StateRows truth(std::size_t cell, std::size_t run, const StateShape& shape) const override;
+  bool has_common_truths() const override { return false; }
   bool has_errors() const override { return true; }
   TextPairs contents() const override { return poses_->contents(); }
   std::vector<std::string> notes() const override;

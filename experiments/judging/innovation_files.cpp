@@ -27,7 +27,7 @@ StateRows times_of(const std::filesystem::path& path) {
 
 }  // namespace
 
-InnovationFiles::InnovationFiles(JudgedFiles files, std::optional<double> gate)
+InnovationFiles::InnovationFiles(JudgedFiles files, std::optional<Gate> gate)
     : EstimateFiles(std::move(files), {}), gate_(gate) {
   for (std::size_t c = 0; c < EstimateFiles::cells().size(); ++c) {
     const std::string& label = EstimateFiles::cells()[c];
@@ -59,15 +59,11 @@ StateRows InnovationFiles::estimates(std::size_t cell, std::size_t run) const {
   return rows;
 }
 
-StateRows InnovationFiles::truth(std::size_t run, const StateShape& shape) const {
-  std::set<double> all;
-  for (std::size_t c = 0; c < EstimateFiles::cells().size(); ++c) {
-    const std::vector<double> some = times_of(EstimateFiles::place(c, run)).time;
-    all.insert(some.begin(), some.end());
-  }
-  StateRows rows{.shape = shape, .time = {all.begin(), all.end()}};
-  rows.state.assign(all.size(), Eigen::VectorXd::Zero(static_cast<Eigen::Index>(shape.width())));
-  rows.line.resize(all.size());
+StateRows InnovationFiles::truth(std::size_t cell, std::size_t run, const StateShape& shape) const {
+  StateRows rows = times_of(place(cell, run));
+  rows.shape = shape;
+  rows.state.assign(rows.time.size(),
+                    Eigen::VectorXd::Zero(static_cast<Eigen::Index>(shape.width())));
   return rows;
 }
 

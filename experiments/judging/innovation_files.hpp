@@ -2,6 +2,7 @@
 #pragma once
 
 #include "experiments/judging/estimate_files.hpp"
+#include "experiments/judging/gate.hpp"
 
 #include <optional>
 #include <string>
@@ -15,7 +16,7 @@ namespace montecarta::experiments {
 class InnovationFiles final : public EstimateFiles {
  public:
   /// `gate` is that of InnovationChoice.
-  InnovationFiles(JudgedFiles files, std::optional<double> gate);
+  InnovationFiles(JudgedFiles files, std::optional<Gate> gate);
 
   const std::vector<std::string>& cells() const override { return labels_; }
   std::filesystem::path place(std::size_t cell, std::size_t run) const override {
@@ -26,8 +27,9 @@ class InnovationFiles final : public EstimateFiles {
   /// Rows whose states are the innovations if their components are known, and else rows without a
   /// state.
   StateRows estimates(std::size_t cell, std::size_t run) const override;
-  /// Zeros at all times of the run.
-  StateRows truth(std::size_t run, const StateShape& shape) const override;
+  /// Zeros at the times of the file.
+  StateRows truth(std::size_t cell, std::size_t run, const StateShape& shape) const override;
+  bool has_common_truths() const override { return false; }
   bool has_errors() const override { return true; }
 
  private:
@@ -39,7 +41,7 @@ class InnovationFiles final : public EstimateFiles {
 
   std::vector<std::string> labels_;  ///< {cell}
   std::vector<Part> parts_;          ///< {cell}
-  std::optional<double> gate_;
+  std::optional<Gate> gate_;
 };
 
 }  // namespace montecarta::experiments

@@ -50,14 +50,13 @@ bool is_of_sensor(const CsvRows& file, const EstimateFields& fields, const std::
 
 /// The NIS of a row, as it would be without the gate.
 double without_gate(const CsvRows& file, double nis, std::uint32_t dof,
-                    std::optional<double> gate) {
-  if (!gate || dof == 0 || std::isnan(nis)) return nis;
-  constexpr double kRounding = 1e-6;
-  if (nis > *gate * (1.0 + kRounding)) {
-    file.refuse("a NIS of " + to_text(nis) + " is beyond --gate " + to_text(*gate) +
+                    const std::optional<Gate>& gate) {
+  if (!gate) return nis;
+  if (dof > 0 && nis > gate->limit(dof) * (1.0 + analysis::kRoundingOfGate)) {
+    file.refuse("a NIS of " + to_text(nis) + " is beyond --gate " + gate->text() +
                 " (which the filter leaves out): leave it out, or give the gate that it has");
   }
-  return analysis::chi_squared_before_gate(nis, dof, *gate);
+  return gate->without_gate(nis, dof);
 }
 
 /// Sums of the innovations of each estimate.
@@ -66,6 +65,7 @@ class InnovationsOfRows {
   InnovationsOfRows(std::size_t rows, const StateShape& shape)
       : shape_(shape), count_(rows), sum_(rows), covariance_(rows) {
     shape_.kind = StateKind::vector;
+    shape_.wraps = false;
     shape_.columns = shape_.components;
   }
   /// Adds the current row, scaled by `factor`, to those of estimate `k`.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "experiments/judging/gate.hpp"
 #include "experiments/judging/state_rows.hpp"
 
 #include <filesystem>
@@ -17,9 +18,9 @@ std::optional<std::filesystem::path> innovations_beside(const std::filesystem::p
 /// Which innovations of a file are read, and what they mean.
 struct InnovationChoice {
   std::string sensor = {};  ///< only those of this sensor; empty: all
-  /// Limit of the NIS of a row, beyond which the filter has left out its innovation. The NIS of the
-  /// others is put on the scale of a whole chi-square variable (STATISTICS (9.3)).
-  std::optional<double> gate = {};
+  /// Gate of the filter. The NIS of a row that it let pass is put on the scale of all innovations
+  /// (STATISTICS (9.3)).
+  std::optional<Gate> gate = {};
   /// Whether to fill state and covariance of `rows` too, if the file has components: with the sum
   /// of the innovations of one time, divided by the root of their number, and its covariance.
   bool with_components = false;

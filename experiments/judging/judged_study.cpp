@@ -43,6 +43,8 @@ struct MatchedRows {
   StateRows rows;
   std::vector<std::size_t> scans;                ///< {row}
   std::vector<std::optional<TrueState>> truths;  ///< {row} nullopt: the estimate is left out
+  /// [s] Last time with a truth; infinite if the truth is known at the times of estimates only.
+  double truth_end = std::numeric_limits<double>::infinity();
 };
 
 Pose pose_in(const Eigen::VectorXd& state) { return {state(0), state(1), wrap(state(2))}; }
@@ -59,14 +61,12 @@ void put_rows(const Eigen::MatrixXd& matrix, std::size_t scan, std::span<double>
 constexpr double kUnknownCost = std::numeric_limits<double>::quiet_NaN();
 
 /// Marks a run as complete, or as failed if it ends although other runs and its truth go on. If
-/// runs have clocks of their own, only a run without estimates is known to have failed. `truth` is
-/// nullptr if all scans have one.
-void end_run(const MatchedRows& run, const TruthPath* truth, const ScanClock& clock,
-             std::size_t cell, RunRecord& record) {
+/// runs have clocks of their own, only a run without estimates is known to have failed.
+void end_run(const MatchedRows& run, const ScanClock& clock, std::size_t cell, RunRecord& record) {
   const std::size_t next = run.scans.empty() ? 0 : run.scans.back() + 1;
   const auto goes_on = [&] {
     const auto missed = clock.missed_after(run.rows.time.back(), cell);
-    return missed && (truth == nullptr || truth->goes_on_at(*missed));
+    return missed && *missed <= run.truth_end;
   };
   const bool is_failed = run.scans.empty() || goes_on();
   if (!is_failed) return record.mark_complete(kUnknownCost);
@@ -191,7 +191,10 @@ Overview overview_of(const EstimateSource& source, const JudgingOptions& options
     return {source.place(c, run), std::move(rows), ScanClock(times, options.match.tolerance)};
   }
   throw StudyError(source.place(c, run).string() +
-                   ": no rows behind the header, nor in any other file (nothing to judge): write "
+                   (options.anchor ? ": at most one row, also in all other files (the first is the "
+                                     "anchor, and nothing is left to judge): write "
+                                   : ": no rows behind the header, nor in any other file (nothing "
+                                     "to judge): write ") +
                    "one row for each time");
 }
 
@@ -245,8 +248,13 @@ class SeenInnovations {
  public:
   /// Throws StudyError if an earlier run of the estimator `cell` has the same NIS.
   void refuse_repeat(std::size_t cell, const StateRows& rows, const fs::path& path) {
-    const auto [earlier, is_new] = seen_.try_emplace({cell, rows.nis}, path);
-    if (is_new || rows.nis.size() < 2) return;
+    std::vector<double> numbers;
+    for (std::size_t row = 0; row < rows.nis.size(); ++row) {
+      if (rows.nis_dof[row] > 0 && std::isfinite(rows.nis[row])) numbers.push_back(rows.nis[row]);
+    }
+    if (numbers.size() < 2) return;
+    const auto [earlier, is_new] = seen_.try_emplace({cell, std::move(numbers)}, path);
+    if (is_new) return;
     throw StudyError(path.string() + ": has the innovations of " + earlier->second.string() +
                      ", number by number (runs must be independent): give each run once");
   }
@@ -283,6 +291,7 @@ std::vector<std::string> write_innovations(const EstimateSource& source, const O
 struct RunNotes {
   const JudgingOptions* options;
   double share_at_anchor = 0.0;
+  std::string of_share = {};  ///< the file with the largest share
   UnwrappedInnovations unwrapped = {};
   SeenInnovations seen = {};
   LikelyMistakes mistakes;
@@ -294,8 +303,8 @@ struct RunNotes {
     constexpr double kMostShare = 0.01;
     if (share_at_anchor <= kMostShare) return {};
     return {"at the first estimate, onto which --anchor moves the truth, a variance is " +
-            to_text(std::round(100.0 * share_at_anchor)) +
-            " % of the last one (it describes more " +
+            to_text(std::round(100.0 * share_at_anchor)) + " % of the last one in " + of_share +
+            " (it describes more " +
             "than the error since then): the verdict leans to conservative"};
   }
 
@@ -324,6 +333,10 @@ void remove_first(StateRows& rows, Truths& truths) {
   remove_from(truths);
 }
 
+bool is_covariance(const Eigen::MatrixXd& P) {
+  return analysis::imported_nees(Eigen::VectorXd::Zero(P.rows()), P).is_usable();
+}
+
 /// The covariance {d, d} that no difference of two errors with the covariances `a` and `b` exceeds,
 /// whatever their correlation is (Young): (1 + t) a + (1 + 1/t) b, with a t that makes it small.
 Eigen::MatrixXd largest_covariance_of_difference(const Eigen::MatrixXd& a,
@@ -346,12 +359,17 @@ std::vector<std::optional<TrueState>> truths_for(StateRows& rows, const fs::path
                                                  const TruthPath& truth, RunNotes& notes) {
   auto truths = truth.at(rows, path, notes.use);
   if (const auto anchor = notes.options->anchor) {
-    notes.share_at_anchor = std::max(notes.share_at_anchor, share_at_anchor(*anchor, rows));
-    move_to_anchor(*anchor, rows, path, truths);
+    const auto row = move_to_anchor(*anchor, rows, path, truths);
+    const double share = row ? share_at_anchor(*anchor, rows, *row) : 0.0;
+    if (share > notes.share_at_anchor) {
+      notes.share_at_anchor = share;
+      notes.of_share = path.string();
+    }
     remove_first(rows, truths);
   }
   for (std::size_t row = 0; row < truths.size(); ++row) {
     if (!truths[row] || truths[row]->covariance.size() == 0) continue;
+    if (!is_covariance(rows.covariance[row])) continue;  // which is a fault of the estimate
     const Eigen::MatrixXd& other = truths[row]->covariance;
     rows.covariance[row] = notes.options->pair.empty()
                                ? Eigen::MatrixXd(rows.covariance[row] + other)
@@ -362,22 +380,35 @@ std::vector<std::optional<TrueState>> truths_for(StateRows& rows, const fs::path
 
 /// {cell} The estimates of a run with their scans and truths.
 std::vector<MatchedRows> matched_run(const EstimateSource& source, std::size_t run,
-                                     const Overview& all, const StateRows& truth_rows,
-                                     const TruthPath& truth, RunNotes& notes) {
+                                     const Overview& all, RunNotes& notes) {
   std::vector<MatchedRows> cells;
+  StateRows truth_rows;
+  std::optional<TruthPath> truth;
   for (std::size_t c = 0; c < source.cells().size(); ++c) {
     const fs::path path = source.place(c, run);
     StateRows rows = source.estimates(c, run);
     notes.unwrapped.add(rows);
     if (notes.options->are_innovations) notes.seen.refuse_repeat(c, rows, path);
     require_alike(rows, path, all.rows, all.path);
+    if (!truth || !source.has_common_truths()) {
+      truth_rows = source.truth(c, run, all.rows.shape);
+      notes.mistakes.add_truth(truth_rows, source.truth_place(c, run));
+      truth.emplace(truth_rows, source.truth_place(c, run), notes.options->match);
+    }
     notes.mistakes.add(c, rows, path, truth_rows);
-    auto truths = truths_for(rows, path, truth, notes);
+    auto truths = truths_for(rows, path, *truth, notes);
     std::vector<std::size_t> scans = all.clock.scans_of(rows.time);
     cells.push_back({std::move(rows), std::move(scans), std::move(truths)});
+    if (source.has_common_truths()) cells.back().truth_end = truth->end();
     if (!notes.options->have_own_scans()) notes.missing += missing_in(cells.back(), all.clock);
   }
   return cells;
+}
+
+/// Whether estimates that begin far from their truth are likely seen from another frame.
+bool compares_starts(const JudgingOptions& options) {
+  return !options.anchor && options.pair.empty() && !options.adds_truth_covariance &&
+         *options.convention != ErrorConvention::right_invariant;
 }
 
 std::vector<std::string> write_runs(const EstimateSource& source, const JudgingOptions& options,
@@ -388,12 +419,9 @@ std::vector<std::string> write_runs(const EstimateSource& source, const JudgingO
   const auto judged = judged_components(all.rows.shape, options.components);
   RunNotes notes{
       .options = &options,
-      .mistakes = LikelyMistakes(source.cells(), *options.convention, options.anchor.has_value())};
+      .mistakes = LikelyMistakes(source.cells(), *options.convention, compares_starts(options))};
   for (std::size_t run = 0; run < source.runs().size(); ++run) {
-    const StateRows truth_rows = source.truth(run, all.rows.shape);
-    notes.mistakes.add_truth(truth_rows, source.truth_place(run));
-    const TruthPath truth(truth_rows, source.truth_place(run), options.match);
-    const auto cells = matched_run(source, run, all, truth_rows, truth, notes);
+    const auto cells = matched_run(source, run, all, notes);
     std::vector<Pose> scan_truths;
     if (plan.drives->itinerary().has_truth) {
       Drive drive;
@@ -405,7 +433,7 @@ std::vector<std::string> write_runs(const EstimateSource& source, const JudgingO
       if (options.have_own_scans()) {
         record.mark_complete(kUnknownCost);
       } else {
-        end_run(cells[c], source.has_errors() ? nullptr : &truth, all.clock, c, record);
+        end_run(cells[c], all.clock, c, record);
       }
       writer.write(c, run, record);
     }

@@ -5,6 +5,7 @@
 #include "engine/records/result_writer.hpp"
 #include "experiments/judging/anchor.hpp"
 #include "experiments/judging/error_convention.hpp"
+#include "experiments/judging/gate.hpp"
 #include "experiments/judging/state_rows.hpp"
 #include "experiments/judging/truth_path.hpp"
 
@@ -27,7 +28,7 @@ struct JudgingOptions {
       {};  ///< two estimators, the second of which is in place of the truth; or empty
   bool are_innovations = false;              ///< whether the files have innovations alone
   std::vector<double> windows = {};          ///< [s] increments over these are judged; or empty
-  std::optional<double> gate = {};           ///< limit of the NIS of innovations that are left
+  std::optional<Gate> gate = {};             ///< of the innovations
   std::vector<std::string> components = {};  ///< names of those that are judged; empty: all
   EqualTimes equal_times = EqualTimes::refuse;
   Existing existing = Existing::refuse;

@@ -73,6 +73,17 @@ std::string of_rows(std::uint64_t some, std::uint64_t all) {
   return std::to_string(some) + " of " + std::to_string(all) + " rows";
 }
 
+/// Columns beside a pose in space that look like parts of a velocity and are not turned with it.
+std::string unturned_velocities(const StateShape& shape) {
+  if (shape.kind != StateKind::pose_in_space || has_velocity(shape)) return "";
+  std::vector<std::string> found;
+  for (std::size_t k = kPoseWidth; k < shape.width(); ++k) {
+    const std::string& column = shape.columns[k];
+    if (column.starts_with("v") || column.ends_with("_mps")) found.push_back(column);
+  }
+  return joined(found, ",");
+}
+
 /// The components of a state without some.
 std::string remaining(const StateShape& shape, const std::vector<std::string>& names) {
   std::vector<std::string> others;
@@ -84,8 +95,8 @@ std::string remaining(const StateShape& shape, const std::vector<std::string>& n
 }  // namespace
 
 LikelyMistakes::LikelyMistakes(std::span<const std::string> cells, ErrorConvention convention,
-                               bool is_anchored)
-    : convention_(convention), is_anchored_(is_anchored) {
+                               bool compares_starts)
+    : convention_(convention), compares_starts_(compares_starts) {
   for (const std::string& label : cells) cells_.emplace_back().label = label;
 }
 
@@ -160,7 +171,7 @@ void LikelyMistakes::add(std::size_t cell, const StateRows& rows, const std::fil
     if (rows.shape.kind == StateKind::pose_in_space) {
       compare_quaternions(rows, row, truth, of_cell);
     }
-    if (row == 0 && !is_anchored_) compare_starts(rows, path, truth, of_cell);
+    if (row == 0 && compares_starts_) compare_starts(rows, path, truth, of_cell);
     if (!is_copy(rows, row, truth)) continue;
     if (of_cell.copies++ == 0) of_cell.first_copy = place_of_line(path, line);
     of_cell.later_copies += row > 0 ? 1 : 0;
@@ -228,6 +239,11 @@ void LikelyMistakes::add_notes(const OfCell& cell, std::vector<std::string>& not
                     mean(other.angle) + " rad from the truth on average, with a NEES ratio of " +
                     mean(other.nees) + ", and are " + mean(stated.angle) +
                     " rad): write x, y, z, w");
+  }
+  if (const std::string velocities = unturned_velocities(cell.shape); !velocities.empty()) {
+    notes.push_back(cell.label + ": " + velocities +
+                    " may be parts of a velocity, and are judged " +
+                    "as differences of numbers: name it vx_mps,vy_mps,vz_mps if it is in the map");
   }
   if (2 * cell.apart > cell.runs) {
     notes.push_back(cell.label + ": " + std::to_string(cell.apart) + " of " +

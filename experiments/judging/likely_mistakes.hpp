@@ -19,9 +19,10 @@ namespace montecarta::experiments {
 /// one time, units.
 class LikelyMistakes {
  public:
-  /// The errors of the estimates are those of `convention`. If truths are moved onto the first
-  /// estimates, these are not compared.
-  LikelyMistakes(std::span<const std::string> cells, ErrorConvention convention, bool is_anchored);
+  /// The errors of the estimates are those of `convention`. `compares_starts` says whether a run
+  /// that begins far from its truth is a mistake.
+  LikelyMistakes(std::span<const std::string> cells, ErrorConvention convention,
+                 bool compares_starts);
 
   /// Adds the truth of a run. Throws StudyError if angles are in another unit than their columns
   /// say.
@@ -79,7 +80,7 @@ class LikelyMistakes {
   static void add_notes(const OfCell& cell, std::vector<std::string>& notes);
 
   ErrorConvention convention_;
-  bool is_anchored_;
+  bool compares_starts_;
   std::vector<OfCell> cells_;
   std::filesystem::path truth_path_;  ///< file of the last truth
   std::uint64_t left_out_ = 0;        ///< number of rows of one time that were not kept

@@ -311,10 +311,45 @@ std::vector<std::size_t> covariance_fields(const Names& header, const StateShape
   return fields;
 }
 
+/// The fields of the covariance of a truth, which may have further elements. `columns` are without
+/// the prefix.
+std::vector<std::size_t> covariance_of_truth(Names columns, const StateShape& shape,
+                                             const std::string& place, const std::string& prefix) {
+  const bool is_in_order = usual_names(state_in_header(columns)) == shape.columns;
+  const auto elements = names_of_elements(columns, shape);
+  for (std::string& name : columns) {
+    if (!name.starts_with(kCovariancePrefix)) continue;
+    const bool has_index = name.find_first_of("0123456789") == kCovariancePrefix.size();
+    if (has_index && !is_in_order) {
+      throw StudyError(place + ": '" + prefix + name + "' has indices, but the truth has not the " +
+                       "columns of the estimates in their order (so a component has no certain "
+                       "number): write names, e.g. " +
+                       prefix + kCovariancePrefix + shape.components.front() + "_" +
+                       shape.components.front());
+    }
+    if (!elements.contains(name)) name.clear();  // of what is not estimated
+  }
+  return covariance_fields(columns, shape,
+                           place + " (covariance of the truth" +
+                               (prefix.empty() ? "" : ", in columns " + prefix + "cov_A_B") + ")");
+}
+
+/// Number of columns of a state that are the truth of another.
+std::size_t columns_of_truth(const Names& header) {
+  return static_cast<std::size_t>(std::ranges::count_if(header, [&](const std::string& name) {
+    const bool is_covariance = name.starts_with(kTruthPrefix + kCovariancePrefix);
+    return name.starts_with(kTruthPrefix) && !is_covariance;
+  }));
+}
+
 /// Tolerance of the length of a quaternion that was printed with three digits.
 constexpr double kQuaternionPlaceSlack = 2e-3;
 
 }  // namespace
+
+Eigen::Quaterniond quaternion_in(const Eigen::VectorXd& state) {
+  return Eigen::Quaterniond(Eigen::Vector4d(state.segment<4>(kQuaternionPlace)));
+}
 
 void normalise_quaternion(Eigen::VectorXd& state, const std::string& place) {
   auto quaternion = state.segment<4>(kQuaternionPlace);
@@ -342,20 +377,35 @@ std::string name_of(StateKind kind) {
                                             : "vector";
 }
 
-OwnTruth own_truth_in(const Names& header) {
+OwnTruth own_truth_in(const Names& header, const std::string& place) {
   const Names state = state_in_header(header);
   if (state.empty()) return OwnTruth::none;
   if (std::ranges::all_of(state, [](const auto& c) { return c.starts_with(kErrorPrefix); }))
     return OwnTruth::errors;
-  const bool has_truth = std::ranges::all_of(
-      state, [&](const auto& column) { return has_name(header, kTruthPrefix + column); });
-  return has_truth ? OwnTruth::columns : OwnTruth::none;
+  Names without;
+  std::ranges::copy_if(state, std::back_inserter(without), [&](const auto& column) {
+    return !has_name(header, kTruthPrefix + column) && !column.starts_with(kTruthPrefix);
+  });
+  const bool has_some = std::ranges::any_of(
+      header, [](const auto& column) { return column.starts_with(kTruthPrefix); });
+  const bool has_errors = std::ranges::any_of(
+      state, [](const auto& column) { return column.starts_with(kErrorPrefix); });
+  if (has_some && (!without.empty() || state.size() != columns_of_truth(header))) {
+    throw StudyError(place + ": some columns begin with " + kTruthPrefix +
+                     " (the truth of everything that is estimated is needed): the state is " +
+                     joined(state, ",") + ", so name each of them " + kTruthPrefix + "NAME too");
+  }
+  if (has_errors) {
+    throw StudyError(place + ": some columns begin with " + kErrorPrefix + ", and others do not (" +
+                     "errors need no states beside them): give the errors of all, or of none");
+  }
+  return has_some ? OwnTruth::columns : OwnTruth::none;
 }
 
 EstimateFields fields_of(const Names& header, const std::string& place) {
   check_header(header, place);
   const Names state = state_in_header(header);
-  EstimateFields fields{.shape = own_truth_in(header) == OwnTruth::errors
+  EstimateFields fields{.shape = own_truth_in(header, place) == OwnTruth::errors
                                      ? shape_of_errors(state, place)
                                      : shape_of(state, place),
                         .state = {},
@@ -420,7 +470,7 @@ EstimateFields truth_fields(const Names& header, const StateShape& shape, const 
                        "it out of the estimates");
     }
   }
-  if (with_covariance) fields.covariance = covariance_fields(header, shape, place);
+  if (with_covariance) fields.covariance = covariance_of_truth(columns, shape, place, prefix);
   return fields;
 }
 
@@ -476,7 +526,7 @@ std::string likeness_to_pose(const StateShape& shape) {
 
 bool is_angle(const StateShape& shape, Eigen::Index k) {
   const bool is_in_space = shape.kind == StateKind::pose_in_space;
-  if (is_in_space && k < kPoseWidth) return false;
+  if (!shape.wraps || (is_in_space && k < kPoseWidth)) return false;
   const Eigen::Index component = is_in_space ? k - kPoseWidth + kPoseComponents : k;
   return shape.units[static_cast<std::size_t>(component)] == "rad";
 }

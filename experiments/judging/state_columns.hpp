@@ -4,6 +4,7 @@
 #include "experiments/files/files.hpp"
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include <cstddef>
 #include <cstdint>
@@ -32,6 +33,7 @@ struct StateShape {
   std::vector<std::string> columns;     ///< {width} names of the state, in the order of StateRows
   std::vector<std::string> components;  ///< {d} names of the error, without units: "x", "rx"
   std::vector<std::string> units;       ///< {d} "m", "rad", ...; "1" if the header has no unit
+  bool wraps = true;                    ///< whether angles are the same after a full turn
 
   std::size_t width() const { return columns.size(); }
   std::size_t dimension() const { return components.size(); }
@@ -70,10 +72,11 @@ inline const std::string kErrorPrefix = "error_";
 /// What a file of estimates has in place of a truth in a file of its own.
 enum class OwnTruth {
   none,
-  columns,  ///< a column true_C for each column C of the state
+  columns,  ///< a column true_C for each column C of the state, and true_cov_A_B if it has errors
   errors    ///< every column of the state is an error, named error_C
 };
-OwnTruth own_truth_in(const std::vector<std::string>& header);
+/// Throws StudyError that begins with `place` if a header has a part of either.
+OwnTruth own_truth_in(const std::vector<std::string>& header, const std::string& place);
 
 /// The fields of the state in the header of a truth, which may have further columns, and of its
 /// covariance if it is wanted. The names of columns begin with `prefix`. Throws StudyError that
@@ -94,6 +97,9 @@ Eigen::MatrixXd covariance_in(const CsvRows& rows, const EstimateFields& fields)
 /// The NIS of the current row and its number of components. Throws StudyError if they are given and
 /// are no sum of squares and its count.
 std::pair<double, std::uint32_t> nis_in(const CsvRows& file, const EstimateFields& fields);
+
+/// The rotation in the state of a pose in space.
+Eigen::Quaterniond quaternion_in(const Eigen::VectorXd& state);
 
 /// Normalises the quaternion in the state of a pose in space.
 void normalise_quaternion(Eigen::VectorXd& state, const std::string& place);

@@ -23,9 +23,7 @@ Eigen::VectorXd between(const StateShape& shape, const Eigen::VectorXd& a, const
     if (is_angle(shape, k)) state(k) = wrap(a(k) + share * wrap(b(k) - a(k)));
   }
   if (shape.kind == StateKind::pose_in_space) {
-    const Eigen::Quaterniond from(Eigen::Vector4d(a.segment<4>(kQuaternionPlace)));
-    const Eigen::Quaterniond to(Eigen::Vector4d(b.segment<4>(kQuaternionPlace)));
-    state.segment<4>(kQuaternionPlace) = from.slerp(share, to).coeffs();
+    state.segment<4>(kQuaternionPlace) = quaternion_in(a).slerp(share, quaternion_in(b)).coeffs();
   }
   return state;
 }
@@ -49,9 +47,7 @@ TrueState TruthPath::in_row(std::size_t row) const {
   return {rows_.state[row], rows_.covariance[row]};
 }
 
-bool TruthPath::goes_on_at(double time) const {
-  return rows_.time.back() >= time - match_.tolerance;
-}
+double TruthPath::end() const { return rows_.time.back() + match_.tolerance; }
 
 /// The row of the truth nearest to `time`. Throws StudyError if it is farther away than the
 /// tolerance.
@@ -99,6 +95,7 @@ std::optional<TrueState> TruthPath::interpolated(double time, const std::string&
   const double share = (time - from) / (to - from);
   TrueState found{between(rows_.shape, rows_.state[right - 1], rows_.state[right], share)};
   if (rows_.covariance.empty()) return found;
+  use.interpolates_covariance = true;
   found.covariance = (1.0 - share) * rows_.covariance[right - 1] + share * rows_.covariance[right];
   return found;
 }
@@ -150,6 +147,12 @@ std::vector<std::string> TruthUse::notes() const {
   if (longest_crossed > 0.0) {
     all.push_back("the truth was interpolated across a gap of " + to_text(longest_crossed) +
                   " s, far longer than usual: its own error there counts as the estimate's");
+  }
+  if (interpolates_covariance) {
+    all.push_back(
+        "between its rows the truth's errors were taken as those of its neighbours (they " +
+        std::string("change little from row to row): if they are independent, give truths "
+                    "at the times of the estimates"));
   }
   if (outside > 0) {
     all.push_back(std::to_string(outside) + " estimates lie before or after the truth and are " +

@@ -25,13 +25,14 @@ struct TimeMatch {
 
 /// What was used of the truths, and what was left out.
 struct TruthUse {
-  double largest_mismatch = 0.0;   ///< [s] between an estimate and the row of the truth used
-  std::string of_mismatch = {};    ///< the estimate's file and time
-  std::uint64_t in_gaps = 0;       ///< number of estimates left out in gaps of a truth
-  std::string first_gap = {};      ///< the first such gap: file and times
-  double longest_crossed = 0.0;    ///< [s] longest gap that was interpolated beyond the usual
-  std::uint64_t outside = 0;       ///< number of estimates left out before or after a truth
-  std::string first_outside = {};  ///< the first such estimate: file and time
+  double largest_mismatch = 0.0;         ///< [s] between an estimate and the row of the truth used
+  std::string of_mismatch = {};          ///< the estimate's file and time
+  std::uint64_t in_gaps = 0;             ///< number of estimates left out in gaps of a truth
+  std::string first_gap = {};            ///< the first such gap: file and times
+  double longest_crossed = 0.0;          ///< [s] longest gap that was interpolated beyond the usual
+  bool interpolates_covariance = false;  ///< whether that of the truth was taken between its rows
+  std::uint64_t outside = 0;             ///< number of estimates left out before or after a truth
+  std::string first_outside = {};        ///< the first such estimate: file and time
 
   /// Sentences on what is not as usual.
   std::vector<std::string> notes() const;
@@ -55,8 +56,8 @@ class TruthPath {
   /// row of the truth, or if no estimate has a truth.
   std::vector<std::optional<TrueState>> at(const StateRows& estimates,
                                            const std::filesystem::path& path, TruthUse& use) const;
-  /// Whether the truth goes on at `time` [s] or later.
-  bool goes_on_at(double time) const;
+  /// [s] Time until which there is a truth, within the tolerance.
+  double end() const;
 
  private:
   TrueState in_row(std::size_t row) const;

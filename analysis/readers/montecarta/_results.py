@@ -119,7 +119,8 @@ class Results:
             Every dataset of the cell, `truth` and `truth_*` where true paths are stored,
             `scan_row`; coordinates run, time [s], scan [s], component (x [m], y [m], heading
             [rad]). Runs that are drives of their own have no common times: without the coordinates
-            time and scan, and without scan_row where poses are stored between scans. `attrs` holds the filter and its settings.
+            time and scan, and without scan_row where poses are stored between scans. `attrs` holds
+            the filter and its settings.
 
         Raises
         ------

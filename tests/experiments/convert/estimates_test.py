@@ -182,7 +182,7 @@ class Layouts(Estimates):
     def test_square_declares_triangle_and_order(self):
         moved = np.roll(WHOLE, 3, (0, 1))
         self.expect(SQUARE + row(1.5, POSE, moved[LOWER]), WHOLE, "SQUARE", "--error body",
-                    "--align yaw")
+                    "--anchor yaw")
         self.expect_refusal(SQUARE.replace("gaussian_se3", "ensemble_se3"), "ensemble_se3")
         self.expect_refusal(SQUARE.replace("TANGENT_ORDER", "ORDER") + row(
             1.5, POSE, moved[LOWER]), "TANGENT_ORDER")

@@ -26,7 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kWorld =
+constexpr const char* kFuzzedWorld =
     "# a yard\nkind,x,y\nwaypoint,10,0\nwaypoint,20,1\nlandmark,15,5\nlandmark,25,-4.5\n";
 
 /// Damages a file `cases` times; returns how often it was refused, with `name` in the message.
@@ -51,13 +51,13 @@ using Reader = std::function<void(const fs::path&)>;
 void expect_refusals(const std::string& name, const std::string& text, const Reader& read) {
   const ScratchFolder folder;
   const fs::path path = folder / name;
-  write_text(folder / "yard.csv", kWorld);
+  write_text(folder / "yard.csv", kFuzzedWorld);
   write_text(path, text);
   EXPECT_GT(refused(path, name, 1000, [&] { read(path); }), 250U);
 }
 
 TEST(InputsFuzz, WorldCsv) {
-  expect_refusals("yard.csv", kWorld, [](const fs::path& path) { read_world_file(path); });
+  expect_refusals("yard.csv", kFuzzedWorld, [](const fs::path& path) { read_world_file(path); });
 }
 
 TEST(InputsFuzz, Estimates) {

@@ -102,9 +102,9 @@ TEST(Anchor, KnowsWhatIsUncertainThere) {
   StateRows rows{.shape = kPlane};
   rows.covariance = {Eigen::Vector3d(0.25, 0.0, 0.04).asDiagonal(),
                      Eigen::Vector3d(1.0, 1.0, 0.4).asDiagonal()};
-  EXPECT_DOUBLE_EQ(share_at_anchor(Anchor::yaw, rows), 0.25);
+  EXPECT_DOUBLE_EQ(share_at_anchor(Anchor::yaw, rows, 0), 0.25);
   rows.covariance[0].setZero();
-  EXPECT_EQ(share_at_anchor(Anchor::yaw, rows), 0.0);
+  EXPECT_EQ(share_at_anchor(Anchor::yaw, rows, 0), 0.0);
 }
 
 }  // namespace

@@ -70,7 +70,7 @@ TEST_F(EstimateArraysTest, HaveErrorsOfWhichNaNIsMissing) {
   EXPECT_EQ(rows.covariance[0], (Eigen::Matrix2d{{1, 0.5}, {0.25, 2}}));
   EXPECT_THAT(rows.shape.components, ElementsAre("e0", "e1"));
   EXPECT_THAT(arrays.times(0, 1), ElementsAre(0.5, 1.0));
-  const StateRows truth = arrays.truth(1, rows.shape);
+  const StateRows truth = arrays.truth(0, 1, rows.shape);
   EXPECT_THAT(truth.time, ElementsAre(0.5, 1.0, 1.5)) << "a run that ends early is seen to";
   EXPECT_EQ(truth.state[0], Eigen::Vector2d(0, 0));
 }
@@ -102,7 +102,7 @@ TEST_F(EstimateArraysTest, HaveMeansWithATruthOfAllRuns) {
   EXPECT_EQ(rows.state[0], Eigen::Vector3d(4, 5, 6));
   EXPECT_THAT(rows.nis_dof, ElementsAre(0U));
   EXPECT_THAT(arrays.estimates(0, 0).nis, ElementsAre(4.5));
-  EXPECT_EQ(arrays.truth(1, rows.shape).state[0], Eigen::Vector3d(1, 1, 1));
+  EXPECT_EQ(arrays.truth(0, 1, rows.shape).state[0], Eigen::Vector3d(1, 1, 1));
 }
 
 TEST_F(EstimateArraysTest, ThatDoNotFitAreNamed) {

@@ -71,10 +71,10 @@ TEST(KnownMap, HasErrorsOfTheStatedSize) {
                                    "scenario.map_sigma_m=0.5", "belief.map_sigma_m=0.25",
                                    "scenario.map=random"}),
                 {}, ExternalPrograms::refused);
-  constexpr int kRuns = 400;
+  constexpr int kDrawnRuns = 400;
   Eigen::Vector3d start = Eigen::Vector3d::Zero();
   double map = 0.0, n = 0.0;
-  for (std::uint64_t run = 0; run < kRuns; ++run) {
+  for (std::uint64_t run = 0; run < kDrawnRuns; ++run) {
     Drive drive;
     plan.drives->generate(run, drive);
     ASSERT_TRUE(drive.prior.has_value());
@@ -87,10 +87,10 @@ TEST(KnownMap, HasErrorsOfTheStatedSize) {
       EXPECT_EQ(drive.prior->map[k].covariance(0, 0), 0.0625);
     }
   }
-  const double five_errors = 5.0 * std::sqrt(2.0 / kRuns);
-  EXPECT_NEAR(start(0) / kRuns / 4.0, 1.0, five_errors);
-  EXPECT_NEAR(start(1) / kRuns / 4.0, 1.0, five_errors);
-  EXPECT_NEAR(start(2) / kRuns / std::pow(kPi / 6.0, 2), 1.0, five_errors);
+  const double five_errors = 5.0 * std::sqrt(2.0 / kDrawnRuns);
+  EXPECT_NEAR(start(0) / kDrawnRuns / 4.0, 1.0, five_errors);
+  EXPECT_NEAR(start(1) / kDrawnRuns / 4.0, 1.0, five_errors);
+  EXPECT_NEAR(start(2) / kDrawnRuns / std::pow(kPi / 6.0, 2), 1.0, five_errors);
   EXPECT_NEAR(map / n / 0.25, 1.0, 5.0 * std::sqrt(2.0 / n));
 }
 
