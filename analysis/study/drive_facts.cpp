@@ -16,12 +16,10 @@ namespace {
 
 constexpr const char* kDeadReckoning = "dead_reckoning";
 
-using Facts = std::vector<std::string>;
-
 std::string count(std::size_t n) { return std::to_string(n); }
 
 /// Adds a fact below `## key` of the texts.
-void add(const char* key, const Values& values, Facts& facts) {
+void add(const char* key, const Values& values, std::vector<std::string>& facts) {
   facts.push_back(prose("drive_facts", key, values));
 }
 
@@ -31,7 +29,7 @@ bool has_map(const CellAnalysis& cell) {
 }
 
 /// Cells that initialised no landmark in the same number of runs share a sentence.
-void add_cells_without_landmark(const StudyAnalysis& study, Facts& facts) {
+void add_cells_without_landmark(const StudyAnalysis& study, std::vector<std::string>& facts) {
   std::vector<std::pair<std::string, std::string>> found;  // runs, cells
   for (const CellAnalysis& cell : study.cells) {
     const std::vector<double> landmarks = cell.scores.column("map_landmarks");
@@ -52,7 +50,7 @@ void add_cells_without_landmark(const StudyAnalysis& study, Facts& facts) {
   }
 }
 
-void add_fixes_in_gaps(const StudyAnalysis& study, Facts& facts) {
+void add_fixes_in_gaps(const StudyAnalysis& study, std::vector<std::string>& facts) {
   for (const JudgedReference& reference : study.references) {
     if (reference.in_gaps == 0) continue;
     add(study.rows_are_scans ? "in gaps of scans" : "in gaps of odometry",
@@ -65,7 +63,7 @@ void add_fixes_in_gaps(const StudyAnalysis& study, Facts& facts) {
 }
 
 /// Says of each reference whether the filter that only integrates the odometry has its headings.
-void add_headings_of_odometry(const StudyAnalysis& study, Facts& facts) {
+void add_headings_of_odometry(const StudyAnalysis& study, std::vector<std::string>& facts) {
   constexpr double kSameHeading = 1e-3;  // [rad]
   const auto found = std::ranges::find(study.cells, kDeadReckoning, &CellAnalysis::filter);
   if (found == study.cells.end()) return;
@@ -79,7 +77,7 @@ void add_headings_of_odometry(const StudyAnalysis& study, Facts& facts) {
 }
 
 void add_facts_of_drive(const CellAnalysis& cell, const std::string& reference,
-                        const DriveScores& drive, Facts& facts) {
+                        const DriveScores& drive, std::vector<std::string>& facts) {
   const Values names = {{"cell", cell.label}, {"reference", reference}};
   const auto with_names = [&](Values values) {
     values.insert(values.end(), names.begin(), names.end());
@@ -101,7 +99,7 @@ void add_facts_of_drive(const CellAnalysis& cell, const std::string& reference,
       facts);
 }
 
-void add_facts_of_drives(const StudyAnalysis& study, Facts& facts) {
+void add_facts_of_drives(const StudyAnalysis& study, std::vector<std::string>& facts) {
   for (const CellAnalysis& cell : study.cells) {
     const DriveConsistencies& all = cell.get<DriveConsistencies>();
     std::size_t k = 0;
@@ -115,7 +113,7 @@ void add_facts_of_drives(const StudyAnalysis& study, Facts& facts) {
 }  // namespace
 
 std::vector<std::string> drive_facts(const StudyAnalysis& study) {
-  Facts facts;
+  std::vector<std::string> facts;
   if (study.has_truth || study.imported.is_imported()) return facts;
   add_cells_without_landmark(study, facts);
   add_fixes_in_gaps(study, facts);

@@ -67,7 +67,8 @@ std::vector<std::string> imported_notes(const StudyAnalysis& study) {
     if (all == nullptr || all->series.unusable == 0) continue;
     const double share =
         static_cast<double>(all->series.unusable) / static_cast<double>(all->series.samples);
-    notes.push_back(prose("components", "unusable",
+    const bool are_increments = !study.imported.windows.empty();
+    notes.push_back(prose("components", are_increments ? "unusable increments" : "unusable",
                           {{"cell", cell.label},
                            {"unusable", std::to_string(all->series.unusable)},
                            {"samples", std::to_string(all->series.samples)},

@@ -82,8 +82,8 @@ double score_of_run(const CellAnalysis& cell, std::uint64_t run, double Referenc
 
 /// Returns whether two scores differ by rounding alone.
 bool are_equal(double a, double b) {
-  constexpr double kRounding = 1e-9;
-  return a == b || std::abs(a - b) <= kRounding * std::min(std::abs(a), std::abs(b));
+  constexpr double kRoundingOfTie = 1e-9;
+  return a == b || std::abs(a - b) <= kRoundingOfTie * std::min(std::abs(a), std::abs(b));
 }
 
 }  // namespace

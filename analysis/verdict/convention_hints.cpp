@@ -5,6 +5,7 @@
 #include "engine/text/number_text.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 namespace montecarta::analysis {
@@ -43,6 +44,7 @@ std::vector<double> nees_with(const ErrorRows& errors, const Correct& correct) {
 }
 
 std::string with_ratio(const char* name, const Verdict& found) {
+  if (std::isnan(found.ratio_estimate())) return name;  // of too few runs
   return std::string(name) + " (NEES ratio " + compact(found.ratio_estimate()) + ")";
 }
 

@@ -142,10 +142,28 @@ std::optional<std::string> fact(const TextPairs& build, const std::string& name)
   return rest;
 }
 
+/// The text of a study without its number of runs.
+std::string without_runs(const std::string& study) {
+  std::istringstream lines(study);
+  std::string rest;
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with("runs = ")) rest += line + "\n";
+  }
+  return rest;
+}
+
 }  // namespace
 
 std::optional<std::string> difference(const ResultDescription& a, const ResultDescription& b,
                                       const std::filesystem::path& path) {
+  if (a.study_sha256 != b.study_sha256 &&
+      without_runs(a.study_text) == without_runs(b.study_text)) {
+    const std::string most = std::to_string(std::max(a.study_runs, b.study_runs));
+    return path.string() + ": belongs to a study of another number of runs (" +
+           std::to_string(b.study_runs) + ", not " + std::to_string(a.study_runs) +
+           "): compute the parts of one study, all with --set study.runs=" + most +
+           " and each with its --runs FIRST:LAST";
+  }
   if (a.study_sha256 != b.study_sha256) {
     return path.string() + ": belongs to another study ('" + b.study_name + "', SHA-256 " +
            b.study_sha256.substr(0, 12) + ", not '" + a.study_name + "', " +

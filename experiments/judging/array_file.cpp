@@ -14,9 +14,9 @@ namespace montecarta::experiments {
 namespace {
 
 /// The first character of a question. The name of an object follows, and a row where one is asked.
-enum class Question : char { members, has, is_group, shape, texts, row, all };
+enum class ArrayQuestion : char { members, has, is_group, shape, texts, row, all };
 
-std::string asked(Question question, const std::string& name = "", std::size_t row = 0) {
+std::string asked(ArrayQuestion question, const std::string& name = "", std::size_t row = 0) {
   std::string text(1 + sizeof row, static_cast<char>(question));
   std::memcpy(text.data() + 1, &row, sizeof row);
   return text + name;
@@ -60,21 +60,21 @@ class OpenArrays {
     std::size_t row = 0;
     std::memcpy(&row, text.data() + 1, sizeof row);
     const std::string name(text.substr(1 + sizeof row));
-    switch (static_cast<Question>(text.front())) {
-      case Question::members:
+    switch (static_cast<ArrayQuestion>(text.front())) {
+      case ArrayQuestion::members:
         return packed(h5::members(file_));
-      case Question::has:
+      case ArrayQuestion::has:
         return h5::has(file_, name) ? "yes" : "";
-      case Question::is_group:
+      case ArrayQuestion::is_group:
         return h5::is_group(file_, name) ? "yes" : "";
-      case Question::shape:
+      case ArrayQuestion::shape:
         return packed(h5::shape(dataset(name)));
-      case Question::texts:
+      case ArrayQuestion::texts:
         if (!h5::has_attribute(file_, name)) return "";
         return "yes" + packed(h5::find_texts(file_, name));
-      case Question::row:
+      case ArrayQuestion::row:
         return rows(name, row);
-      case Question::all:
+      case ArrayQuestion::all:
         return rows(name, std::nullopt);
     }
     return "";
@@ -117,23 +117,23 @@ ForkedReader::Answer reader_of(const std::filesystem::path& path) {
 ArrayFile::ArrayFile(const std::filesystem::path& path) : copy_(path, reader_of(path)) {}
 
 std::vector<std::string> ArrayFile::members() const {
-  return unpacked_texts(copy_.ask(asked(Question::members)));
+  return unpacked_texts(copy_.ask(asked(ArrayQuestion::members)));
 }
 
 bool ArrayFile::has(const std::string& name) const {
-  return !copy_.ask(asked(Question::has, name)).empty();
+  return !copy_.ask(asked(ArrayQuestion::has, name)).empty();
 }
 
 bool ArrayFile::is_group(const std::string& name) const {
-  return !copy_.ask(asked(Question::is_group, name)).empty();
+  return !copy_.ask(asked(ArrayQuestion::is_group, name)).empty();
 }
 
 h5::Shape ArrayFile::shape(const std::string& array) const {
-  return unpacked<h5::Shape::value_type>(copy_.ask(asked(Question::shape, array)));
+  return unpacked<h5::Shape::value_type>(copy_.ask(asked(ArrayQuestion::shape, array)));
 }
 
 std::optional<std::vector<std::string>> ArrayFile::texts(const std::string& attribute) const {
-  const std::string answer = copy_.ask(asked(Question::texts, attribute));
+  const std::string answer = copy_.ask(asked(ArrayQuestion::texts, attribute));
   if (answer.empty()) return std::nullopt;
   return unpacked_texts(std::string_view(answer).substr(3));
 }
@@ -141,7 +141,7 @@ std::optional<std::vector<std::string>> ArrayFile::texts(const std::string& attr
 std::vector<double> ArrayFile::numbers(const std::string& array,
                                        std::optional<std::size_t> row) const {
   return unpacked<double>(
-      copy_.ask(asked(row ? Question::row : Question::all, array, row.value_or(0))));
+      copy_.ask(asked(row ? ArrayQuestion::row : ArrayQuestion::all, array, row.value_or(0))));
 }
 
 }  // namespace montecarta::experiments

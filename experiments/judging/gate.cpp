@@ -17,6 +17,12 @@ Gate::Gate(const std::string& text) : text_(text) {
     throw StudyError("--gate " + excerpt(text) +
                      ": neither a limit of the NIS nor a share that passes: write e.g. 9 or 99%");
   }
+  constexpr double kLeast = 1.0, kLikeShare = 90.0, kWhole = 100.0;
+  if (!is_share && (*number < kLeast || (*number >= kLikeShare && *number < kWhole))) {
+    throw StudyError("--gate " + text +
+                     ": a limit of the NIS, or a share of innovations that passes? " + "Write " +
+                     to_text(*number < kLeast ? 100.0 * *number : *number) + "% for the share");
+  }
   (is_share ? share_ : limit_) = is_share ? *number / 100.0 : *number;
 }
 

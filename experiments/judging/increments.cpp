@@ -83,7 +83,7 @@ Eigen::VectorXd state_of(const Eigen::Isometry3d& pose) {
 
 /// The errors of a pose's components, as a vector.
 StateShape shape_of_increments(const StateShape& poses) {
-  const std::size_t d = components_in_space(poses).size();
+  const auto d = static_cast<std::ptrdiff_t>(components_in_space(poses).size());
   StateShape shape;
   shape.components.assign(poses.components.begin(), poses.components.begin() + d);
   shape.units.assign(poses.units.begin(), poses.units.begin() + d);

@@ -28,7 +28,7 @@ StateRows times_of(const std::filesystem::path& path) {
 }  // namespace
 
 InnovationFiles::InnovationFiles(JudgedFiles files, std::optional<Gate> gate)
-    : EstimateFiles(std::move(files), {}), gate_(gate) {
+    : EstimateFiles(std::move(files), {}), gate_(std::move(gate)) {
   for (std::size_t c = 0; c < EstimateFiles::cells().size(); ++c) {
     const std::string& label = EstimateFiles::cells()[c];
     labels_.push_back(label);

@@ -190,12 +190,16 @@ Overview overview_of(const EstimateSource& source, const JudgingOptions& options
   if (most > 0) {
     return {source.place(c, run), std::move(rows), ScanClock(times, options.match.tolerance)};
   }
-  throw StudyError(source.place(c, run).string() +
-                   (options.anchor ? ": at most one row, also in all other files (the first is the "
-                                     "anchor, and nothing is left to judge): write "
-                                   : ": no rows behind the header, nor in any other file (nothing "
-                                     "to judge): write ") +
-                   "one row for each time");
+  throw StudyError(
+      source.place(c, run).string() +
+      (options.anchor ? ": at most one row, also in all other files (the first is the "
+                        "anchor, and nothing is left to judge): write "
+       : !options.windows.empty()
+           ? ": no increment over --windows, nor in any other file (neighbouring rows "
+             "are farther apart, or the drive is shorter): choose other windows, or write "
+           : ": no rows behind the header, nor in any other file (nothing "
+             "to judge): write ") +
+      "one row for each time");
 }
 
 /// Whether there are states with truths, and not innovations alone.
@@ -395,7 +399,8 @@ std::vector<MatchedRows> matched_run(const EstimateSource& source, std::size_t r
       notes.mistakes.add_truth(truth_rows, source.truth_place(c, run));
       truth.emplace(truth_rows, source.truth_place(c, run), notes.options->match);
     }
-    notes.mistakes.add(c, rows, path, truth_rows);
+    // The errors of increments are computed, and no file has them.
+    if (notes.options->windows.empty()) notes.mistakes.add(c, rows, path, truth_rows);
     auto truths = truths_for(rows, path, *truth, notes);
     std::vector<std::size_t> scans = all.clock.scans_of(rows.time);
     cells.push_back({std::move(rows), std::move(scans), std::move(truths)});

@@ -221,6 +221,17 @@ TEST_F(Commands, ShardsMergeIntoTheWhole) {
   EXPECT_THAT(call({"status", "out.h5"}).out, testing::ContainsRegex("ekf_slam +3 +0 +0 +3"));
 }
 
+TEST_F(Commands, MoreRunsOfAStudyMergeIfTheyAreParts) {
+  ASSERT_EQ(call({"run", "blink.ini", "-o", "a.h5", "--quiet"}).code, 0);
+  ASSERT_EQ(
+      call({"run", "blink.ini", "-o", "b.h5", "--quiet", "--set", "study.runs=5", "--runs", "3:5"})
+          .code,
+      0);
+  EXPECT_THAT(call({"merge", "out.h5", "a.h5", "b.h5"}).err,
+              HasSubstr("belongs to a study of another number of runs (5, not 3): compute the "
+                        "parts of one study, all with --set study.runs=5"));
+}
+
 TEST_F(Commands, NothingThatIsReadIsEverReplaced) {
   EXPECT_EQ(call({"run", "blink.ini", "-o", "blink.ini", "--force"}).code, 2);
   EXPECT_EQ(call({"run", "blink.ini", "-o", "blink.csv", "--force"}).code, 2);

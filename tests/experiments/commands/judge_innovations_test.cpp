@@ -60,6 +60,11 @@ TEST_F(JudgeInnovations, BehindAGateArePutOnTheScaleWithoutOne) {
   EXPECT_THAT(called.out, HasSubstr("with a NIS of at most 9 in a row of the files"));
   EXPECT_THAT(judged({"i.csv"}, {"--innovations", "--gate", "8"}).err,
               HasSubstr("i.csv:2: a NIS of 9 is beyond --gate 8"));
+  for (const std::string share : {"99", "0.99"}) {
+    EXPECT_THAT(judged({"i.csv"}, {"--innovations", "--gate", share}).err, HasSubstr("Write 99%"));
+  }
+  EXPECT_THAT(judged({"i.csv"}, {"--innovations", "--gate", "99.9%"}).err,
+              HasSubstr("stored in mine.h5"));
   EXPECT_THAT(judged({"i.csv"}, {"--gate", "8"}).err, HasSubstr("--gate: needs --innovations"));
   EXPECT_THAT(judged({"i.csv"}, {"--innovations", "--error", "world"}).err,
               HasSubstr("--error: not beside --innovations"));
