@@ -252,23 +252,10 @@ StateRows EstimateArrays::estimates(std::size_t cell, std::size_t run) const {
 
 StateRows EstimateArrays::truth(std::size_t cell, std::size_t run,
                                 const StateShape& /*shape*/) const {
-  if (truth_) {
-    StateRows rows = states_of(*truth_, run, truth_place(cell, run));
-    if (!rows.time.empty()) return rows;
-    refuse("truth", "of run " + std::to_string(run) + " is NaN at all scans: give true states");
-  }
-  StateRows rows{.shape = shape_};
-  for (std::size_t s = 0; s < states_.shape[1]; ++s) rows.line.push_back(s);
-  if (time_) rows.time = numbers(*time_, run);
-  if (!time_) rows.time.assign(rows.line.begin(), rows.line.end());
-  const auto is_unknown = [&](std::size_t s) { return std::isnan(rows.time[s]); };
-  std::erase_if(rows.line, is_unknown);
-  std::erase_if(rows.time, [](double time) { return std::isnan(time); });
-  rows.state.assign(rows.time.size(),
-                    Eigen::VectorXd::Zero(static_cast<Eigen::Index>(shape_.width())));
-  if (rows.time.empty())
-    refuse("time", "of run " + std::to_string(run) + " is NaN at all scans: give times");
-  return rows;
+  expect(truth_.has_value(), "errors have no truth");
+  StateRows rows = states_of(*truth_, run, truth_place(cell, run));
+  if (!rows.time.empty()) return rows;
+  refuse("truth", "of run " + std::to_string(run) + " is NaN at all scans: give true states");
 }
 
 TextPairs EstimateArrays::contents() const {

@@ -43,16 +43,10 @@ StateRows EstimateFiles::estimates(std::size_t cell, std::size_t run) const {
 }
 
 StateRows EstimateFiles::truth(std::size_t cell, std::size_t run, const StateShape& shape) const {
-  if (!has_errors()) {
-    return read_truth(truth_place(cell, run), shape,
-                      {.equal = how_.equal_times,
-                       .with_covariance = how_.truth_covariance,
-                       .prefix = how_.own_truth == OwnTruth::columns ? kTruthPrefix : ""});
-  }
-  StateRows rows = read_estimates(place(cell, run), how_.equal_times);
-  rows.covariance.clear();
-  for (Eigen::VectorXd& error : rows.state) error.setZero();
-  return rows;
+  return read_truth(truth_place(cell, run), shape,
+                    {.equal = how_.equal_times,
+                     .with_covariance = how_.truth_covariance,
+                     .prefix = how_.own_truth == OwnTruth::columns ? kTruthPrefix : ""});
 }
 
 TextPairs EstimateFiles::contents() const {

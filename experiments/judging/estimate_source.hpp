@@ -31,7 +31,7 @@ class EstimateSource {
   virtual std::vector<double> times(std::size_t cell, std::size_t run) const = 0;
   /// A state without components is that of innovations alone, which have no truth.
   virtual StateRows estimates(std::size_t cell, std::size_t run) const = 0;
-  /// The truth of the estimates of a run, of states of this shape.
+  /// The truth of the estimates of a run, of states of this shape. Sources of errors are not asked.
   virtual StateRows truth(std::size_t cell, std::size_t run, const StateShape& shape) const = 0;
   /// Whether all cells have the same truth of a run, which may go on after their estimates end.
   /// Otherwise it is at the times of each cell's own.

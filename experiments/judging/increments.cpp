@@ -168,14 +168,6 @@ StateRows Increments::estimates(std::size_t cell, std::size_t run) const {
                        windows_[cell % windows_.size()], convention_);
 }
 
-StateRows Increments::truth(std::size_t cell, std::size_t run, const StateShape& shape) const {
-  StateRows rows = estimates(cell, run);
-  rows.shape = shape;
-  rows.covariance.clear();
-  for (Eigen::VectorXd& error : rows.state) error.setZero();
-  return rows;
-}
-
 std::vector<std::string> Increments::notes() const {
   std::vector<std::string> notes = poses_->notes();
   const std::vector<std::string> of_truth = use_.notes();

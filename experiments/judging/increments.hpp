@@ -29,8 +29,10 @@ class Increments final : public EstimateSource {
   std::vector<double> times(std::size_t cell, std::size_t run) const override;
   /// Errors {window}{d} of a vector with the components of the pose.
   StateRows estimates(std::size_t cell, std::size_t run) const override;
-  /// Zeros at the times at which windows end.
-  StateRows truth(std::size_t cell, std::size_t run, const StateShape& shape) const override;
+  /// Not asked, since these are errors.
+  StateRows truth(std::size_t cell, std::size_t run, const StateShape& shape) const override {
+    return poses_->truth(of_poses(cell), run, shape);
+  }
   bool has_common_truths() const override { return false; }
   bool has_errors() const override { return true; }
   TextPairs contents() const override { return poses_->contents(); }

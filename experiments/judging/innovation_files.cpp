@@ -59,12 +59,4 @@ StateRows InnovationFiles::estimates(std::size_t cell, std::size_t run) const {
   return rows;
 }
 
-StateRows InnovationFiles::truth(std::size_t cell, std::size_t run, const StateShape& shape) const {
-  StateRows rows = times_of(place(cell, run));
-  rows.shape = shape;
-  rows.state.assign(rows.time.size(),
-                    Eigen::VectorXd::Zero(static_cast<Eigen::Index>(shape.width())));
-  return rows;
-}
-
 }  // namespace montecarta::experiments

@@ -27,8 +27,6 @@ class InnovationFiles final : public EstimateFiles {
   /// Rows whose states are the innovations if their components are known, and else rows without a
   /// state.
   StateRows estimates(std::size_t cell, std::size_t run) const override;
-  /// Zeros at the times of the file.
-  StateRows truth(std::size_t cell, std::size_t run, const StateShape& shape) const override;
   bool has_common_truths() const override { return false; }
   bool has_errors() const override { return true; }
 

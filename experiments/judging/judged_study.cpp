@@ -382,6 +382,14 @@ std::vector<std::optional<TrueState>> truths_for(StateRows& rows, const fs::path
   return truths;
 }
 
+/// The truth of errors, which are those from zero.
+StateRows zeros_at(const StateRows& errors) {
+  StateRows zeros{.shape = errors.shape, .time = errors.time, .state = errors.state};
+  for (Eigen::VectorXd& zero : zeros.state) zero.setZero();
+  zeros.line = errors.line;
+  return zeros;
+}
+
 /// {cell} The estimates of a run with their scans and truths.
 std::vector<MatchedRows> matched_run(const EstimateSource& source, std::size_t run,
                                      const Overview& all, RunNotes& notes) {
@@ -395,7 +403,7 @@ std::vector<MatchedRows> matched_run(const EstimateSource& source, std::size_t r
     if (notes.options->are_innovations) notes.seen.refuse_repeat(c, rows, path);
     require_alike(rows, path, all.rows, all.path);
     if (!truth || !source.has_common_truths()) {
-      truth_rows = source.truth(c, run, all.rows.shape);
+      truth_rows = source.has_errors() ? zeros_at(rows) : source.truth(c, run, all.rows.shape);
       notes.mistakes.add_truth(truth_rows, source.truth_place(c, run));
       truth.emplace(truth_rows, source.truth_place(c, run), notes.options->match);
     }

@@ -70,9 +70,7 @@ TEST_F(EstimateArraysTest, HaveErrorsOfWhichNaNIsMissing) {
   EXPECT_EQ(rows.covariance[0], (Eigen::Matrix2d{{1, 0.5}, {0.25, 2}}));
   EXPECT_THAT(rows.shape.components, ElementsAre("e0", "e1"));
   EXPECT_THAT(arrays.times(0, 1), ElementsAre(0.5, 1.0));
-  const StateRows truth = arrays.truth(0, 1, rows.shape);
-  EXPECT_THAT(truth.time, ElementsAre(0.5, 1.0, 1.5)) << "a run that ends early is seen to";
-  EXPECT_EQ(truth.state[0], Eigen::Vector2d(0, 0));
+  EXPECT_FALSE(arrays.has_common_truths());
 }
 
 TEST_F(EstimateArraysTest, MayBeSavedByOctaveWhoseVectorsHaveTwoAxes) {
