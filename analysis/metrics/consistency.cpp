@@ -92,12 +92,14 @@ std::vector<Band> bands(const StudyAnalysis& study, std::size_t dimension) {
   return found;
 }
 
+/// Label of a panel: "NEES ratio of the pose".
+std::string label_of(const StudyAnalysis& study, ErrorBlock block) {
+  return "NEES ratio of the " +
+         (block == ErrorBlock::pose ? study.imported.name_of_whole() : name_of(block));
+}
+
 Panel nees_panel(const StudyAnalysis& study, ErrorBlock block) {
-  Panel panel{"nees_ratio_" + name_of(block),
-              "NEES ratio of the " + name_of(block),
-              {},
-              {},
-              Scale::automatic};
+  Panel panel{"nees_ratio_" + name_of(block), label_of(study, block), {}, {}, Scale::automatic};
   std::size_t dimension = 0;
   panel.curves = cell_curves(study, [&](const CellAnalysis& cell) {
     const NeesResult* nees = cell.find_nees(block, cell.leading);
@@ -105,7 +107,8 @@ Panel nees_panel(const StudyAnalysis& study, ErrorBlock block) {
     dimension = nees->series.dimension;
     return scaled(nees->series.average, 1.0 / static_cast<double>(dimension));
   });
-  if (!panel.curves.empty()) panel.bands = bands(study, dimension);
+  const bool is_bound = !study.imported.pair.empty();  // of which no law is known
+  if (!panel.curves.empty() && !is_bound) panel.bands = bands(study, dimension);
   return panel;
 }
 
@@ -121,7 +124,7 @@ StripRow strip_of(const CellAnalysis& cell, const NeesResult& nees) {
 
 StripPanel nees_strips(const StudyAnalysis& study, ErrorBlock block) {
   StripPanel panel{"nees_ratio_" + name_of(block),
-                   "NEES ratio of the " + name_of(block),
+                   label_of(study, block),
                    "inside the " + level_text(study.level) + " band",
                    "mean",
                    {}};
@@ -153,8 +156,13 @@ Figure nees_figure(const StudyAnalysis& study, const std::vector<ErrorBlock>& bl
 }
 
 Figure anees_figure(const StudyAnalysis& study) {
-  return nees_figure(study, {ErrorBlock::pose}, prose("consistency", "strips of pose"),
-                     prose("consistency", "curves of pose", {{"level", level_text(study.level)}}),
+  const Values whole = {{"whole", study.imported.name_of_whole()}};
+  Values curve = whole;
+  curve.emplace_back("level", level_text(study.level));
+  const bool is_bound = !study.imported.pair.empty();
+  return nees_figure(study, {ErrorBlock::pose}, prose("consistency", "strips of whole", whole),
+                     is_bound ? prose("consistency", "curves of bound", whole)
+                              : prose("consistency", "curves of whole", curve),
                      figure_of("anees"));
 }
 

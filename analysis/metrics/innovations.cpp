@@ -43,7 +43,8 @@ class InnovationsOverRuns final : public MergedSums<InnovationsOverRuns> {
   }
   void put(CellAnalysis& cell) override {
     if (innovations_.empty()) return;
-    Innovations found = innovations_.result(criteria_->times, criteria_->level, criteria_->within);
+    Innovations found =
+        innovations_.result(criteria_->times, criteria_->level_of_each(), criteria_->within);
     if (!has_common_scans_) {
       found.average.clear();
       found.bounds.clear();
@@ -100,8 +101,8 @@ void innovations_series(const CellAnalysis& cell, std::vector<Frame::Column>& al
 std::string largest_text(const LargestInnovation& largest) {
   const std::string components = std::to_string(std::llround(largest.dof));
   return compact(largest.nis) + " of " + components +
-         (largest.dof == 1.0 ? " component at " : " components at ") + readable(largest.time) +
-         " s of run " + std::to_string(largest.run);
+         (largest.dof == 1.0 ? " component at " : " components at ") + clock_text(largest.time) +
+         " of run " + std::to_string(largest.run);
 }
 
 std::vector<TextTable::Entry> innovation_row(const CellAnalysis& cell, double level) {
@@ -167,13 +168,12 @@ std::vector<std::string> largest_notes(const StudyAnalysis& study) {
     const Innovations* found = cell.find<Innovations>();
     if (found == nullptr || !found->are_decided_by_largest()) continue;
     const LargestInnovation& largest = found->largest;
-    notes.push_back(
-        prose("innovations", "largest",
-              {{"cell", cell.label},
-               {"largest", largest_text(largest)},
-               {"words", whiteness_in_words(largest.whiteness_without, largest.answer_without)},
-               {"without", readable(largest.ratio_without)},
-               {"with", readable(found->ratio)}}));
+    notes.push_back(prose("innovations", "largest",
+                          {{"cell", cell.label},
+                           {"largest", largest_text(largest)},
+                           {"words", whiteness_without_largest(*found)},
+                           {"without", readable(largest.ratio_without)},
+                           {"with", readable(found->ratio)}}));
   }
   return notes;
 }
@@ -185,7 +185,7 @@ std::string correlated_words(const Innovations& found, const std::vector<std::st
   for (std::size_t k = 0; k < std::min(found.components.size(), names.size()); ++k) {
     const ComponentCorrelation& one = found.components[k];
     if (one.is_white()) {
-      if (found.whiteness() == Whiteness::white && one.has_bias()) {
+      if (one.has_bias() && found.whiteness() == Whiteness::white) {
         words += "; " + names[k] + " has a mean of " + readable(one.mean, 2) + " +- " +
                  readable(one.mean_bound, 2) + " deviations, where 0 is right";
       }
@@ -210,11 +210,13 @@ std::vector<Section::Block> leads_of(const StudyAnalysis& study) {
                                                     "covariance that is positive definite."});
       continue;
     }
-    const double ratio = found->ratio;
-    leads.emplace_back(Section::Lead{
-        cell.label + ", innovations: " + whiteness_in_words(*found) + "; NIS per component " +
-        with_interval(ratio, found->verdict.ratio()) + ", where 1 is right" +
-        correlated_words(*found, study.imported.components) + "."});
+    std::string words = cell.label + ", innovations: " + whiteness_in_words(*found);
+    if (found->judge_size()) {
+      words += "; NIS per component " + with_interval(found->ratio, found->verdict.ratio()) +
+               ", where 1 is right";
+    }
+    words += correlated_words(*found, study.imported.components);
+    leads.emplace_back(Section::Lead{words + "."});
   }
   return leads;
 }

@@ -95,8 +95,10 @@ RunCriteria criteria_of(const ResultFile& file, double level, double within) {
     criteria.units = imported.units;
     criteria.by_upper_bounds = !imported.pair.empty();
     criteria.has_own_scans = imported.state == kInnovationsAlone || !imported.windows.empty();
-    if (imported.state == kInnovationsAlone)
+    if (imported.state == kInnovationsAlone) {
       criteria.innovation_components = imported.components.size();
+      criteria.tests_together = 2 * sensors_of(file);
+    }
     criteria.share_of_runs = 1.0;  // a file of imported estimates is no shard
   }
   for (const ReferencePath& path : file.references()) {

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <set>
+#include <utility>
 
 namespace montecarta::analysis {
 namespace {
@@ -17,14 +19,24 @@ std::vector<std::string> words_in(const std::string& list) {
   return words;
 }
 
+/// The value of a setting of a cell; empty if it has none of this name.
+std::string setting_of(const StoredCell& cell, const char* name) {
+  const auto pair = std::ranges::find(cell.settings, name, &TextPairs::value_type::first);
+  return pair == cell.settings.end() ? std::string() : pair->second;
+}
+
 }  // namespace
+
+std::string ImportedState::name_of_whole() const {
+  if (state == kInnovationsAlone) return "innovation";
+  if (!pair.empty()) return "difference";
+  if (!windows.empty()) return "increment";
+  return state == "vector" ? "state" : "pose";
+}
 
 ImportedState imported_state(const StoredCell& cell) {
   ImportedState found;
-  const auto setting = [&](const char* name) {
-    const auto pair = std::ranges::find(cell.settings, name, &TextPairs::value_type::first);
-    return pair == cell.settings.end() ? std::string() : pair->second;
-  };
+  const auto setting = [&](const char* name) { return setting_of(cell, name); };
   if (setting("state") == kInnovationsAlone) found.state = kInnovationsAlone;
   found.gate = setting("gate");
   if (!cell.has("error")) {
@@ -40,6 +52,37 @@ ImportedState imported_state(const StoredCell& cell) {
   found.components = words_in(setting("components"));
   found.units = words_in(setting("units"));
   return found;
+}
+
+std::vector<StateBlock> blocks_of(std::span<const std::string> components,
+                                  std::span<const std::string> units) {
+  struct Kind {
+    const char* name;
+    const char* unit;
+    std::vector<std::string> components;
+  };
+  static const std::vector<Kind> kKinds = {{"position", "m", {"x", "y", "z"}},
+                                           {"rotation", "rad", {"rx", "ry", "rz"}},
+                                           {"heading", "rad", {"heading"}},
+                                           {"velocity", "mps", {"vx", "vy", "vz"}}};
+  std::vector<StateBlock> blocks;
+  for (const Kind& kind : kKinds) {
+    StateBlock block{kind.name, {}};
+    for (std::size_t k = 0; k < std::min(components.size(), units.size()); ++k) {
+      if (units[k] == kind.unit && std::ranges::count(kind.components, components[k]) > 0)
+        block.components.push_back(static_cast<Eigen::Index>(k));
+    }
+    const std::size_t size = block.components.size();
+    if (size > 0 && size < components.size()) blocks.push_back(std::move(block));
+  }
+  return blocks;
+}
+
+std::size_t sensors_of(const ResultFile& file) {
+  std::set<std::string> sensors;
+  for (const StoredCell& cell : file.cells()) sensors.insert(setting_of(cell, "sensor"));
+  sensors.erase("");
+  return std::max<std::size_t>(sensors.size(), 1);
 }
 
 }  // namespace montecarta::analysis

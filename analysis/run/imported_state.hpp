@@ -3,6 +3,10 @@
 
 #include "engine/records/result_file.hpp"
 
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -29,10 +33,26 @@ struct ImportedState {
   std::vector<std::string> units = {"m", "m", "rad"};
 
   bool is_imported() const { return !state.empty(); }
+  /// Name of the whole whose error is judged: "pose", "state", "innovation", ...
+  std::string name_of_whole() const;
 };
+
+/// Components of a state that are also judged by themselves.
+struct StateBlock {
+  std::string name;                      ///< "position", "rotation", "heading" or "velocity"
+  std::vector<Eigen::Index> components;  ///< indices, increasing
+};
+
+/// The blocks of a state whose components have these names and units, without one that is the whole
+/// state: position x, y, z [m]; rotation rx, ry, rz or heading [rad]; velocity vx, vy, vz [mps].
+std::vector<StateBlock> blocks_of(std::span<const std::string> components,
+                                  std::span<const std::string> units);
 
 /// The imported state from the settings of a cell if 'montecarta judge' made the file, else the
 /// pose in the plane.
 ImportedState imported_state(const StoredCell& cell);
+
+/// Number of sensors of an estimator whose innovations are judged sensor by sensor; else 1.
+std::size_t sensors_of(const ResultFile& file);
 
 }  // namespace montecarta::analysis

@@ -103,11 +103,7 @@ std::size_t whiten(const Eigen::VectorXd& error, const Eigen::MatrixXd& covarian
 /// `least_deviation`, except errors of at most `rounding`, which rounding explains.
 void add_errors_of_exact(const Eigen::VectorXd& error, const Eigen::MatrixXd& covariance,
                          const Eigen::VectorXd& least_deviation, std::span<double> largest,
-                         double rounding = 1e-9);
-
-/// [m, rad] Errors up to this are explained by poses that another program rounds to single
-/// precision.
-inline constexpr double kSingleRounding = 1e-6;
+                         double rounding = kDoubleRounding);
 
 /// Poses with deviations up to these [m, m, rad] are known exactly.
 const Eigen::Vector3d& least_pose_deviation();

@@ -36,6 +36,9 @@ struct RunCriteria {
   /// {scan} row of each scan; empty if rows are scans.
   std::span<const std::uint32_t> scan_rows = {};
   ErrorFrame frame = ErrorFrame::of_truth;
+  /// Number of tests of an estimator that are judged together: of innovations alone, their
+  /// whiteness and their size at each sensor; else 1.
+  std::size_t tests_together = 1;
   /// Number of components if the judged errors are innovations, whose whiteness is tested; else 0.
   std::size_t innovation_components = 0;
   bool has_own_scans = false;    ///< whether a cell has no estimate at scans of other cells
@@ -55,10 +58,12 @@ struct RunCriteria {
   /// drives are recordings without truth: they have no errors and no NEES.
   std::vector<DriveCriteria> drives = {};
 
-  /// Level of a verdict on this number of runs, such that all interim analyses together have
-  /// `level`.
+  /// Level of one of tests_together tests, such that all of them have `level` (Bonferroni).
+  double level_of_each() const { return 1.0 - (1.0 - level) / static_cast<double>(tests_together); }
+  /// Level of a verdict on this number of runs, such that all interim analyses and all
+  /// tests_together have `level`.
   double verdict_level(std::uint64_t runs) const {
-    return level_of_analysis(level, runs_at_analyses, runs);
+    return level_of_analysis(level_of_each(), runs_at_analyses, runs);
   }
 };
 

@@ -186,7 +186,6 @@ void RunMetrics::correct_and_whiten(const RunRows& rows, std::size_t particles, 
   whitened_.standardised.assign(scans * d, kNaN);
   whitened_.errors_of_exact.assign(d, 0.0);
   whitened_.number = rows.run;
-  const Eigen::VectorXd exact = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(d));
   for (std::size_t s = 0; s < scans; ++s) {
     std::optional<DrawsScales> scales;
     if (leading == &corrected) {
@@ -201,16 +200,8 @@ void RunMetrics::correct_and_whiten(const RunRows& rows, std::size_t particles, 
       whiten_pose(rows, s, scales, frame);
       continue;
     }
-    const Eigen::VectorXd error = rows.error.error(s);
-    const Eigen::MatrixXd P = rows.error.covariance_of(s);
-    whiten(error, P, exact, std::span(whitened_.whitened).subspan(d * s, d),
-           std::span(whitened_.standardised).subspan(d * s, d));
-    const bool is_pose = !rows.error.nees_by.front().empty();
-    if (is_pose) {
-      add_errors_of_exact(error, P, exact, whitened_.errors_of_exact, kSingleRounding);
-    } else {
-      add_errors_of_exact(error, P, exact, whitened_.errors_of_exact);
-    }
+    whiten_imported(rows.error.error(s), rows.error.covariance_of(s), rows.error.rounding(), s,
+                    whitened_);
   }
 }
 

@@ -62,6 +62,10 @@ struct JointRows {
   std::size_t states() const { return mean.empty() ? 0 : covariance.size() / mean.size(); }
 };
 
+/// [m, rad] Errors up to these are explained by rounding, of numbers and of poses that another
+/// program rounds to single precision.
+inline constexpr double kDoubleRounding = 1e-9, kSingleRounding = 1e-6;
+
 /// Errors of an imported estimate at every scan, in the convention that its file states; empty
 /// where not stored.
 struct ErrorRows {
@@ -71,6 +75,9 @@ struct ErrorRows {
   /// empty if not stored.
   std::array<std::vector<double>, kErrorConventions.size()> nees_by;
 
+  /// Errors up to this of components that are known exactly are rounding: in single precision, of
+  /// poses.
+  double rounding() const { return nees_by.front().empty() ? kDoubleRounding : kSingleRounding; }
   std::size_t components() const { return value.empty() ? 0 : covariance.size() / value.size(); }
   std::size_t scans() const { return value.empty() ? 0 : value.size() / components(); }
   Eigen::VectorXd error(std::size_t scan) const {

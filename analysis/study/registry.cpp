@@ -17,7 +17,7 @@ namespace montecarta::analysis {
 // NAME_metric() is defined in metrics/NAME.cpp, except beacons_metric() in map_size.cpp and
 // particles_metric() in diversity.cpp.
 Metric errors_metric(), consistency_metric(), verdict_metric(), families_metric(),
-    components_metric(), map_size_metric(), particles_metric(), lineages_metric(),
+    components_metric(), blocks_metric(), map_size_metric(), particles_metric(), lineages_metric(),
     association_metric(), references_metric(), drive_metric(), beacons_metric(), bound_metric(),
     map_errors_metric(), joint_nees_metric(), error_envelopes_metric(), innovations_metric(),
     diversity_metric(), calibration_metric(), cost_metric(), convention_hints_metric(),
@@ -26,14 +26,15 @@ Metric errors_metric(), consistency_metric(), verdict_metric(), families_metric(
 std::span<const Metric> all_metrics() {
   // The order is that of their numbers in files.
   static constexpr std::array kMakers = {
-      errors_metric,          consistency_metric,   verdict_metric,
-      families_metric,        components_metric,    map_size_metric,
-      particles_metric,       lineages_metric,      association_metric,
-      references_metric,      drive_metric,         beacons_metric,
-      bound_metric,           map_errors_metric,    joint_nees_metric,
-      error_envelopes_metric, innovations_metric,   diversity_metric,
-      calibration_metric,     cost_metric,          convention_hints_metric,
-      smoother_metric,        proper_scores_metric, observability_metric};
+      errors_metric,           consistency_metric,     verdict_metric,
+      families_metric,         components_metric,      blocks_metric,
+      map_size_metric,         particles_metric,       lineages_metric,
+      association_metric,      references_metric,      drive_metric,
+      beacons_metric,          bound_metric,           map_errors_metric,
+      joint_nees_metric,       error_envelopes_metric, innovations_metric,
+      diversity_metric,        calibration_metric,     cost_metric,
+      convention_hints_metric, smoother_metric,        proper_scores_metric,
+      observability_metric};
   static const std::vector<Metric> all = [] {
     std::vector<Metric> made;
     for (Metric (*make)() : kMakers) made.push_back(make());

@@ -10,6 +10,7 @@
 #include "analysis/study/imported_notes.hpp"
 #include "analysis/study/metric.hpp"
 #include "analysis/study/prose.hpp"
+#include "analysis/verdict/block_errors.hpp"
 #include "analysis/verdict/sentence.hpp"
 #include "engine/numbers/angle.hpp"
 #include "engine/text/number_text.hpp"
@@ -115,9 +116,13 @@ Frame::Row numbers_of(const CellAnalysis& cell, const NeesResult& nees, double l
   return row;
 }
 
+std::string ratio_text(const Verdict& verdict) {
+  if (verdict.beside.repeated_runs > 0) return "-";
+  return with_interval(verdict.ratio_estimate(), verdict.ratio());
+}
+
 std::string ratio_text(const CellAnalysis& cell) {
-  if (tested_pose(cell) == nullptr || cell.verdict.beside.repeated_runs > 0) return "-";
-  return with_interval(cell.verdict.ratio_estimate(), cell.verdict.ratio());
+  return tested_pose(cell) == nullptr ? "-" : ratio_text(cell.verdict);
 }
 
 std::string MeanText::text() const {
@@ -159,8 +164,7 @@ Tone tone_of(Answer answer) {
 Tone tone_of(const Verdict& verdict) {
   if (verdict.beside.repeated_runs > 0) return Tone::plain;
   if (!verdict.beside.exact.empty()) return Tone::bad;
-  const bool is_slight = verdict.answer != Answer::consistent && !verdict.is_refused;
-  return is_slight ? Tone::plain : tone_of(verdict.answer);
+  return verdict.is_slight() ? Tone::plain : tone_of(verdict.answer);
 }
 
 Tone tone_of_runs(const CellAnalysis& cell) {
@@ -300,18 +304,32 @@ std::vector<std::string> cautions(std::span<const CellAnalysis> cells,
 }
 
 TextTable summary_table(const StudyAnalysis& study) {
-  TextTable table =
-      cell_table(study, [&](const CellAnalysis& cell) -> std::vector<TextTable::Entry> {
-        const auto mean = [&](const char* score) { return cell.over_runs(score).mean; };
-        return {
-            {"complete", complete_runs_text(cell)},
-            {"verdict", name_of(cell.verdict.answer), Align::left, tone_of(cell.verdict.answer)},
-            {"NEES ratio [" + level_text(study.level) + "]", ratio_text(cell)},
-            {"RMSE [m]", readable(mean("position_rmse"))},
-            {"RMSE [deg]", readable(180.0 / kPi * mean("heading_rmse"))},
-            {"ancestors", ancestors_text(cell)},
-            {"CPU/run [s]", readable(mean("cpu_seconds"), 2)}};
-      });
+  TextTable table;
+  const std::string ratio = "NEES ratio [" + level_text(study.level) + "]";
+  const auto entry_of = [](const Verdict& verdict) -> TextTable::Entry {
+    return {"verdict", answer_in_words(verdict), Align::left, tone_of(verdict)};
+  };
+  for (const CellAnalysis& cell : study.cells) {
+    const auto mean = [&](const char* score) { return cell.over_runs(score).mean; };
+    table.add({{"cell", cell.label, Align::left},
+               {"complete", complete_runs_text(cell)},
+               entry_of(cell.verdict),
+               {ratio, ratio_text(cell)},
+               {"RMSE [m]", readable(mean("position_rmse"))},
+               {"RMSE [deg]", readable(180.0 / kPi * mean("heading_rmse"))},
+               {"ancestors", ancestors_text(cell)},
+               {"CPU/run [s]", readable(mean("cpu_seconds"), 2)}});
+    for (const BlockVerdict& block : cell.get<std::vector<BlockVerdict>>()) {
+      table.add({{"cell", "  " + block.name, Align::left},
+                 {"complete", complete_runs_text(cell)},
+                 entry_of(block.verdict),
+                 {ratio, ratio_text(block.verdict)},
+                 {"RMSE [m]", "-"},
+                 {"RMSE [deg]", "-"},
+                 {"ancestors", "-"},
+                 {"CPU/run [s]", "-"}});
+    }
+  }
   for (std::size_t c = table.headings.size() - 1; c > kComplete; --c) leave_out(c, "-", table);
   leave_out(kComplete, std::to_string(study.runs_here), table);
   return table;

@@ -23,9 +23,11 @@ static_assert(kInnovationLags < kLagsTogether);
 /// together.
 constexpr double kFarthest = 5.0;
 
-/// The number of standard deviations that white innovations exceed at none of `lags` lags (Sidak).
-double white_deviate(std::size_t lags, double level) {
-  const double each = std::pow(level, 1.0 / static_cast<double>(lags));
+/// The number of standard deviations that white innovations exceed at none of `lags` lags of the
+/// NIS and of each component, nor in the mean of a component (Sidak).
+double white_deviate(std::size_t lags, std::size_t components, double level) {
+  const auto tests = static_cast<double>(lags * (1 + components) + components);
+  const double each = std::pow(level, 1.0 / tests);
   return normal_quantile(0.5 + 0.5 * each);
 }
 
@@ -161,13 +163,13 @@ std::vector<ComponentCorrelation> InnovationSums::correlated_components(std::uin
   std::vector<ComponentCorrelation> all(components_.size());
   for (std::size_t k = 0; k < all.size(); ++k) {
     all[k].mean = components_[k].mean();
-    all[k].mean_bound = white_deviate(all.size(), level) / std::sqrt(components_[k].pairs(0));
     const std::size_t lags = components_[k].lags(runs);
+    const double deviate = white_deviate(lags, all.size(), level);
+    all[k].mean_bound = deviate / std::sqrt(components_[k].pairs(0));
     for (std::size_t lag = 1; lag <= lags; ++lag) {
       const ComponentCorrelation one{.lag = lag,
                                      .correlation = components_[k].correlation(lag),
-                                     .bound = white_deviate(lags * (1 + all.size()), level) /
-                                              std::sqrt(components_[k].pairs(lag))};
+                                     .bound = deviate / std::sqrt(components_[k].pairs(lag))};
       const double distance = std::abs(one.correlation) / one.bound;
       if (all[k].lag > 0 && distance <= std::abs(all[k].correlation) / all[k].bound) continue;
       all[k].lag = one.lag;
@@ -207,8 +209,8 @@ void InnovationSums::Totals::find_correlations(double level, Innovations& result
   for (std::size_t lag = 1; lag <= lags; ++lag) {
     const double correlation = products_.correlation(lag);
     if (std::isnan(correlation)) continue;
-    const double bound = white_deviate(lags * (1 + result.components.size()), level) /
-                         std::sqrt(products_.pairs(lag));
+    const double bound =
+        white_deviate(lags, result.components.size(), level) / std::sqrt(products_.pairs(lag));
     result.autocorrelation[lag - 1] = correlation;
     result.white_bound[lag - 1] = bound;
     if (result.worst_lag > 0 && std::abs(correlation) / bound <= farthest) continue;
@@ -249,17 +251,28 @@ Whiteness Innovations::whiteness_of_nis() const {
 bool Innovations::are_decided_by_largest() const {
   if (std::isnan(largest.ratio_without)) return false;
   return whiteness_of_nis() != largest.whiteness_without ||
-         is_off(verdict.answer) != is_off(largest.answer_without);
+         (judge_size() && is_off(verdict.answer) != is_off(largest.answer_without));
 }
 
-std::string whiteness_in_words(Whiteness whiteness, Answer answer) {
-  if (whiteness == Whiteness::untested) return "whiteness not tested, " + name_of(answer);
-  if (whiteness == Whiteness::white) return "white, " + name_of(answer);
-  return "not white, size " + (answer == Answer::untested ? "not judged" : name_of(answer));
+std::string whiteness_in_words(Whiteness whiteness, std::optional<Answer> size) {
+  const std::string words = whiteness == Whiteness::untested ? "whiteness not tested"
+                            : whiteness == Whiteness::white  ? "white"
+                                                             : "not white";
+  if (!size) return words;
+  if (whiteness != Whiteness::not_white) return words + ", " + name_of(*size);
+  return words + ", size " + (*size == Answer::untested ? "not judged" : name_of(*size));
 }
 
 std::string whiteness_in_words(const Innovations& found) {
-  return whiteness_in_words(found.whiteness(), found.verdict.answer);
+  const Answer size = found.verdict.answer;
+  return whiteness_in_words(found.whiteness(),
+                            found.judge_size() ? std::optional(size) : std::nullopt);
+}
+
+std::string whiteness_without_largest(const Innovations& found) {
+  const Answer size = found.largest.answer_without;
+  return whiteness_in_words(found.largest.whiteness_without,
+                            found.judge_size() ? std::optional(size) : std::nullopt);
 }
 
 }  // namespace montecarta::analysis

@@ -51,7 +51,7 @@ struct ComponentCorrelation {
   double correlation = kNaN;
   double bound = kNaN;
   /// The mean over all runs and scans, and the distance from 0 that white innovations do not exceed
-  /// in any component.
+  /// in any component. It is judged together with all correlations.
   double mean = kNaN, mean_bound = kNaN;
   bool is_white() const { return lag == 0 || std::abs(correlation) <= bound; }
   bool has_bias() const { return std::abs(mean) > mean_bound; }
@@ -83,6 +83,8 @@ struct Innovations {
   /// {component} correlations of the components; empty if they are not known.
   std::vector<ComponentCorrelation> components;
 
+  /// Whether `verdict` judges the size. If components are known, the verdict on errors does.
+  bool judge_size() const { return components.empty(); }
   Whiteness whiteness() const;
   /// By the NIS alone, without the components.
   Whiteness whiteness_of_nis() const;
@@ -92,10 +94,12 @@ struct Innovations {
 };
 
 /// The findings in words: "white, consistent", "not white, size optimistic", "not white, size not
-/// judged", ...
-std::string whiteness_in_words(Whiteness whiteness, Answer answer);
+/// judged", ...; "white" if no size is judged.
+std::string whiteness_in_words(Whiteness whiteness, std::optional<Answer> size);
 
 std::string whiteness_in_words(const Innovations& found);
+/// The findings without the largest innovation.
+std::string whiteness_without_largest(const Innovations& found);
 
 /// The run with the largest innovation.
 struct LargestRun {

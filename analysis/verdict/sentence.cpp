@@ -125,9 +125,9 @@ std::string when(const Verdict& verdict, Side direction) {
   if (gap == shown.size() && to_end && from_start) return "in every eighth of the drive";
   if (verdict.beside.p_of_equal_stretches > 1.0 - verdict.level) return "";
   if (gap != shown.size()) return "at some times more than at others";
-  if (to_end) return "from " + readable(shown.front()->from) + " s on";
-  if (from_start) return "until " + readable(shown.back()->to) + " s";
-  return "from " + readable(shown.front()->from) + " s to " + readable(shown.back()->to) + " s";
+  if (to_end) return "from " + clock_text(shown.front()->from) + " on";
+  if (from_start) return "until " + clock_text(shown.back()->to);
+  return "from " + clock_text(shown.front()->from) + " to " + clock_text(shown.back()->to);
 }
 
 double distance_of(const Member& ratio) { return std::abs(std::log(ratio.estimate)); }
@@ -402,22 +402,17 @@ std::string open_words(const Verdict& verdict) {
          more_runs_words(verdict);
 }
 
-bool is_slight(const Verdict& verdict) {
-  return !verdict.is_refused && verdict.beside.exact.empty();
-}
-
 std::string answer_words(const Verdict& verdict) {
-  const std::string name = name_of(verdict.of_tests);
   switch (verdict.of_tests) {
     case Answer::untested:
       return "not tested";
     case Answer::consistent:
       return within_words(verdict) + slight_words(verdict);
     case Answer::undecided:
-      return name + ": " +
+      return name_of(verdict.of_tests) + ": " +
              (verdict.is_by_upper_bounds ? "no fault is shown" : more_runs_words(verdict));
     default:
-      return (is_slight(verdict) ? "slightly " : "") + name + ": " + shown_words(verdict);
+      return answer_in_words(verdict) + ": " + shown_words(verdict);
   }
 }
 
@@ -504,10 +499,10 @@ std::string undecided_words(const Verdict& verdict) {
 
 /// Text of the findings of the tests.
 std::string tested_words(const Verdict& verdict) {
-  const std::string slightly = is_slight(verdict) ? "slightly " : "";
+  const std::string slightly = verdict.is_slight() ? "slightly " : "";
   const std::string few = few_runs_words(verdict);
   const std::string open =
-      (few.empty() ? "" : "; " + few) + (is_slight(verdict) ? "; " + open_words(verdict) : "");
+      (few.empty() ? "" : "; " + few) + (verdict.is_slight() ? "; " + open_words(verdict) : "");
   switch (verdict.of_tests) {
     case Answer::consistent:
       return consistent_words(verdict);

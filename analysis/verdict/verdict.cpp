@@ -32,7 +32,7 @@ std::string name_of(const Member& member) {
   if (std::isnan(member.from)) return member.name;
   const bool is_scan = member.from == member.to;
   std::string time = is_scan ? "at " + fixed_seconds(member.from)
-                             : readable(member.from) + " s to " + readable(member.to) + " s";
+                             : clock_text(member.from) + " to " + clock_text(member.to);
   if (member.name.empty()) return time;
   return member.name + (is_scan ? " " : " from ") + time;
 }
@@ -270,6 +270,16 @@ std::string name_of(Answer answer) {
   constexpr std::array kNames = {"untested",     "consistent",   "optimistic",
                                  "conservative", "inconsistent", "undecided"};
   return kNames.at(static_cast<std::size_t>(answer));
+}
+
+bool Verdict::is_slight() const {
+  const bool is_off = answer == Answer::optimistic || answer == Answer::conservative ||
+                      answer == Answer::inconsistent;
+  return is_off && !is_refused && beside.exact.empty();
+}
+
+std::string answer_in_words(const Verdict& verdict) {
+  return (verdict.is_slight() ? "slightly " : "") + name_of(verdict.answer);
 }
 
 const FamilyTest* Verdict::find(Family family) const {

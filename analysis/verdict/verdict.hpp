@@ -170,12 +170,17 @@ struct Verdict {
   /// nothing is shown to be consistent, and correlations and spreads say nothing.
   bool is_by_upper_bounds = false;
 
+  /// Whether the filter is off, and by nothing that is shown to be beyond the margin.
+  bool is_slight() const;
   /// The tests of a family; nullptr if it does not apply.
   const FamilyTest* find(Family family) const;
   /// Interval of the ratio of all squared errors to the expected ones; NaN if there is none.
   Interval ratio() const;
   double ratio_estimate() const;
 };
+
+/// "optimistic", "slightly optimistic", ...
+std::string answer_in_words(const Verdict& verdict);
 
 /// Takes the verdict by the margin `within` from families that judge_together() judged at `level`,
 /// for `runs` complete runs.

@@ -57,6 +57,10 @@ std::string with_error_to(int decimals, double mean, double standard_error) {
 
 std::string fixed_seconds(double time) { return printed("%.*f", 1, time) + " s"; }
 
+std::string clock_text(double time) {
+  return std::abs(time) < 1e6 ? readable(time) + " s" : fixed_seconds(time);
+}
+
 std::string duration_text(double seconds) {
   const double tenths = std::ceil(10.0 * seconds);
   if (tenths < 100.0) return printed("%.*f s", 1, tenths / 10.0);

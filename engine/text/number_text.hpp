@@ -24,6 +24,10 @@ std::string with_error_to(int decimals, double mean, double standard_error);
 /// Text of a time [s] to a tenth of a second, "4.2 s".
 std::string fixed_seconds(double time);
 
+/// Text of a time [s], "12.4 s"; of the time of a clock, whose digits count, to a tenth of a
+/// second, "1403636583.1 s".
+std::string clock_text(double time);
+
 /// A duration in at most 8 characters, rounded up below two days: "4.2 s", "12 s", "3:05 min",
 /// "12:40 h", "3.4 d".
 std::string duration_text(double seconds);

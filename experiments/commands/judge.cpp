@@ -216,7 +216,8 @@ int judge_command(const Arguments& arguments) {
   for (const std::string& note : notes) std::cerr << "montecarta: note: " << note << "\n";
   std::cerr << "montecarta: " << source->runs().size()
             << (source->runs().size() == 1 ? " run of " : " runs of ") << source->cells().size()
-            << (source->cells().size() == 1 ? " estimator" : " estimators") << ", stored in "
+            << (options.are_innovations ? " cell" : " estimator")
+            << (source->cells().size() == 1 ? ", stored in " : "s, stored in ")
             << options.output.string() << "\n";
   return kDone;
 }

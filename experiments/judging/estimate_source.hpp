@@ -21,6 +21,8 @@ class EstimateSource {
 
   /// {cell} Labels of the estimators, in alphabetical order.
   virtual const std::vector<std::string>& cells() const = 0;
+  /// The sensor whose innovations a cell has; empty if its estimator has one cell.
+  virtual std::string sensor(std::size_t /*cell*/) const { return ""; }
   /// {run} Numbers of the runs, consecutive and increasing.
   virtual const std::vector<std::uint64_t>& runs() const = 0;
   /// Where the estimates of a run are, for messages.

@@ -73,8 +73,8 @@ std::string import_text(const EstimateSource& source, const TextPairs& settings)
   return text;
 }
 
-Cell imported_cell(const std::string& label, const StateRows& first, std::size_t components,
-                   const TextPairs& settings) {
+Cell imported_cell(const std::string& label, const std::string& sensor, const StateRows& first,
+                   std::size_t components, const TextPairs& settings) {
   const bool is_whole = components == first.shape.dimension();
   const std::size_t known = conventions_of(first.shape.kind).size();
   const std::size_t conventions = is_whole && known > 1 ? known : 0;
@@ -87,6 +87,7 @@ Cell imported_cell(const std::string& label, const StateRows& first, std::size_t
                                 .conventions = conventions,
                                 .has_pose = is_whole && first.shape.kind == StateKind::pose};
   cell.settings = settings;
+  if (!sensor.empty()) cell.settings.emplace_back("sensor", sensor);
   return cell;
 }
 
@@ -118,8 +119,10 @@ StudyPlan imported_plan(const EstimateSource& source, const StateRows& first,
   plan.first_run = source.runs().front();
   plan.last_run = plan.runs = source.runs().back() + 1;
   plan.columns = {.ancestry = false, .scans_only = true};
-  for (const std::string& label : source.cells())
-    plan.cells.push_back(imported_cell(label, first, components, settings));
+  for (std::size_t c = 0; c < source.cells().size(); ++c) {
+    plan.cells.push_back(
+        imported_cell(source.cells()[c], source.sensor(c), first, components, settings));
+  }
   plan.drives =
       std::make_shared<ImportedDrives>(std::move(times), plan.cells.front().imported->has_pose);
   plan.scenario = {{"kind", "imported"},

@@ -31,14 +31,16 @@ InnovationFiles::InnovationFiles(JudgedFiles files, std::optional<Gate> gate)
     : EstimateFiles(std::move(files), {}), gate_(std::move(gate)) {
   for (std::size_t c = 0; c < EstimateFiles::cells().size(); ++c) {
     const std::string& label = EstimateFiles::cells()[c];
-    labels_.push_back(label);
-    parts_.push_back({c, ""});
     std::set<std::string> sensors;
     for (std::size_t run = 0; run < runs().size(); ++run) {
       for (std::string& sensor : sensors_in(EstimateFiles::place(c, run)))
         sensors.insert(std::move(sensor));
     }
-    if (sensors.size() < 2) continue;
+    if (sensors.size() < 2) {
+      labels_.push_back(label);
+      parts_.push_back({c, ""});
+      continue;
+    }
     for (const std::string& sensor : sensors) {
       labels_.push_back(label + "." + sensor);
       check_label(labels_.back());

@@ -11,14 +11,14 @@
 namespace montecarta::experiments {
 
 /// Innovations alone in CSV files, one for each run, without states and truths. Their columns are
-/// those of read_innovations(). If they name several sensors, each is an estimator too, called
-/// CELL.SENSOR.
+/// those of read_innovations(). If they name several sensors, each is a cell, called CELL.SENSOR.
 class InnovationFiles final : public EstimateFiles {
  public:
   /// `gate` is that of InnovationChoice.
   InnovationFiles(JudgedFiles files, std::optional<Gate> gate);
 
   const std::vector<std::string>& cells() const override { return labels_; }
+  std::string sensor(std::size_t cell) const override { return parts_[cell].sensor; }
   std::filesystem::path place(std::size_t cell, std::size_t run) const override {
     return EstimateFiles::place(parts_[cell].files, run);
   }
@@ -34,7 +34,7 @@ class InnovationFiles final : public EstimateFiles {
   /// The innovations of one cell.
   struct Part {
     std::size_t files;   ///< index of the cell whose files it is read from
-    std::string sensor;  ///< empty: all sensors
+    std::string sensor;  ///< empty if the files name at most one
   };
 
   std::vector<std::string> labels_;  ///< {cell}

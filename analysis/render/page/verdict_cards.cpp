@@ -107,7 +107,7 @@ struct Sparkline {
   std::string bars_of(const FamilyTest& test) const {
     constexpr double kLeastWidth = 2.0;
     const bool is_scan = test.family == Family::scan;
-    const auto words = [&](double t) { return is_scan ? fixed_seconds(t) : readable(t) + " s"; };
+    const auto words = [&](double t) { return is_scan ? fixed_seconds(t) : clock_text(t); };
     const auto& all = test.members;
     std::string path, from, to;
     for (std::size_t k = 0; k < all.size(); ++k) {

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Innovations by sensor and behind a gate, and two estimators without a truth.
+#include "analysis/run/criteria_of.hpp"
 #include "analysis/statistics/distributions.hpp"
 #include "analysis/study/study_analysis.hpp"
+#include "analysis/verdict/innovations.hpp"
 #include "engine/random/stream.hpp"
 #include "engine/records/result_file.hpp"
 #include "experiments/text/words.hpp"
@@ -29,7 +31,7 @@ class JudgeInnovations : public BlinkProgram {
   }
 };
 
-TEST_F(JudgeInnovations, OfSeveralSensorsAreJudgedTogetherAndApart) {
+TEST_F(JudgeInnovations, OfSeveralSensorsAreJudgedSensorBySensor) {
   write("i_0.csv", "time_s,sensor,nis,nis_dof\n1,gps,2,2\n1,lidar,3,3\n2,lidar,6,3\n");
   write("i_1.csv", "time_s,sensor,nis,nis_dof\n1,lidar,3,3\n2,lidar,4,3\n3,lidar,5,3\n");
   const Called called = judged({"i_0.csv", "i_1.csv"}, {"--innovations"});
@@ -37,8 +39,9 @@ TEST_F(JudgeInnovations, OfSeveralSensorsAreJudgedTogetherAndApart) {
   const ResultFile file(folder_ / "mine.h5");
   std::vector<std::string> labels;
   for (const StoredCell& cell : file.cells()) labels.push_back(cell.label);
-  EXPECT_THAT(labels, ElementsAre("i", "i.gps", "i.lidar"));
-  EXPECT_THAT(column_of("i", "nis"), ElementsAre(5.0, 6.0, IsNan()));
+  EXPECT_THAT(labels, ElementsAre("i.gps", "i.lidar"));
+  EXPECT_EQ(analysis::criteria_of(file, 0.95, 1.1).level_of_each(), 1.0 - 0.05 / 4.0)
+      << "whiteness and size of two sensors";
   EXPECT_EQ(column_of("i.gps", "nis")[0], 2.0);
   EXPECT_EQ(column_of("i.gps", "nis")[1], 0.0) << "nothing was observed";
   EXPECT_EQ(column_of("i.lidar", "nis")[1], 6.0);
@@ -71,6 +74,32 @@ TEST_F(JudgeInnovations, BehindAGateArePutOnTheScaleWithoutOne) {
 }
 
 // Rows of one time are summed up, with the deviation of their sum.
+// A bias of one sensor is no bias of another: their sum would be right.
+TEST_F(JudgeInnovations, OfSensorsWithOppositeFaultsAreBothOff) {
+  std::vector<std::string> files;
+  for (std::uint64_t run = 0; run < 20; ++run) {
+    RngStream draw({9, run, 0, 0, Draw::test});
+    std::string text = "time_s,sensor,gap_m,cov_0_0\n";
+    for (int k = 0; k < 50; ++k) {
+      text += std::to_string(k) + ",left," + to_text(draw.normal() + 0.5) + ",1\n";
+      text += std::to_string(k) + ",right," + to_text(draw.normal() - 0.5) + ",1\n";
+    }
+    files.push_back("i_" + std::to_string(run) + ".csv");
+    write(files.back(), text);
+  }
+  ASSERT_EQ(judged(files, {"--innovations"}).code, 0);
+  const auto study = analysis::analyze(ResultFile(folder_ / "mine.h5"), 0.95);
+  ASSERT_EQ(study.cells.size(), 2U);
+  for (const analysis::CellAnalysis& cell : study.cells) {
+    const analysis::FamilyTest* bias = cell.verdict.find(analysis::Family::bias);
+    ASSERT_NE(bias, nullptr);
+    EXPECT_TRUE(bias->is_rejected) << cell.label;
+    const auto& found = cell.get<analysis::Innovations>();
+    EXPECT_TRUE(found.components.front().has_bias()) << cell.label;
+    EXPECT_FALSE(found.judge_size()) << "the verdict on errors does";
+  }
+}
+
 TEST_F(JudgeInnovations, WithComponentsHaveABiasAndCorrelations) {
   std::vector<std::string> files;
   for (std::uint64_t run = 0; run < 20; ++run) {

@@ -349,7 +349,7 @@ TEST_F(Judge, InnovationsAloneNeedNoTruth) {
   const Called called = judge(files, {"--innovations", "-o", "mine.h5"});
   EXPECT_EQ(called.code, 0) << called.err;
   EXPECT_THAT(called.out,
-              AllOf(HasSubstr("innovation, innovations: white, optimistic"),
+              AllOf(HasSubstr("innovation, innovations: white."),
                     HasSubstr("2 runs, 100 scans each"), HasSubstr("innovation is optimistic")));
   EXPECT_EQ(call({"gate", "mine.h5"}).code, 4);
   EXPECT_EQ(call({"report", "mine.h5", "-o", "report"}).code, 0);
