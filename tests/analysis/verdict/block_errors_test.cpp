@@ -56,7 +56,7 @@ class BlocksOfAState : public testing::Test {
   std::vector<BlockVerdict> judged(double factor) {
     BlockErrors sums(blocks_, 40);
     for (std::uint64_t run = 0; run < 50; ++run) sums.add(errors_of_run(run, factor), run, blocks_);
-    return sums.result(blocks_, {names_, times_}, 0.95, 1.3, 50);
+    return sums.result(blocks_, {names_, times_}, 0.95, 1.5, 50);
   }
   std::vector<StateBlock> blocks_ = {{"position", {0, 1}}, {"velocity", {2, 3}}};
   Names names_ = {"x", "y", "vx", "vy"};

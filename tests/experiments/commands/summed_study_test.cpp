@@ -189,9 +189,9 @@ TEST_F(SlowSummedStudy, IsRefusedIfAnotherVersionWroteItsSums) {
 }
 
 TEST_F(SlowSummedStudy, LeavesNoFolderIfTheDiskIsTooSmall) {
-  const Called called =
-      run("out.h5", {"--set", "scenario.control_rate=1e5", "--set", "scenario.scan_rate=1e5",
-                     "--set", "record.rate=control", "--set", "record.columns=sums, map, particles"});
+  const Called called = run(
+      "out.h5", {"--set", "scenario.control_rate=1e5", "--set", "scenario.scan_rate=1e5", "--set",
+                 "record.rate=control", "--set", "record.columns=sums, map, particles"});
   EXPECT_EQ(called.code, 1);
   EXPECT_THAT(called.err, testing::HasSubstr("are needed"));
   EXPECT_FALSE(exists("out.h5.groups"));
