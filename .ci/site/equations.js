@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Equations are drawn by the MathJax beside the pages. It is read before MathJax itself.
 window.MathJax = {
-  AuthorInit() {
-    MathJax.Ajax.config.path.MathJax = MathJax.Hub.config.root;
-  },
-  config: [],
   jax: ["input/TeX", "output/SVG"],
   extensions: ["tex2jax.js"],
   TeX: { extensions: ["AMSmath.js", "AMSsymbols.js"] },
@@ -14,7 +10,7 @@ window.MathJax = {
     ignoreClass: ".*",
     processClass: "arithmatex",
   },
-  SVG: { scale: 95, mtextFontInherit: false, font: "TeX" },
+  SVG: { font: "TeX" },
   showMathMenu: false,
   messageStyle: "none",
 };

@@ -105,8 +105,10 @@ class Pages:
 
     def picture(self, document, number, diagram):
         name = f"{pathlib.Path(document).stem.lower()}_{number}.svg"
+        if shutil.which("dot") is None:
+            raise SiteError("no dot, which draws diagrams: run 'bash .ci/install-packages site'")
         dot = subprocess.run(["dot", "-Tsvg"], input=dot_of(document, diagram), text=True,
-                             capture_output=True, check=True)
+                             stdout=subprocess.PIPE, check=True)
         self.write(os.path.join(os.path.dirname(document), name), dot.stdout)
         return f"![Diagram]({name})"
 
