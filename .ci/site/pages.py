@@ -10,6 +10,7 @@ import yaml
 
 LANGUAGES = {".cpp": "cpp", ".hpp": "cpp", ".ini": "ini", ".m": "matlab", ".py": "python",
              ".cff": "yaml"}
+VERBATIM = {"experiments/commands/commands.md"}  # the program prints its sections as they stand
 PICTURES = {".svg", ".png"}
 
 FENCE = re.compile(r"\s*(```+|~~~+)")
@@ -89,7 +90,11 @@ class Pages:
                 lines.append(line)
             elif not begin:
                 diagram.append(line)
-        self.write(document, "\n".join(lines) + "\n")
+        text = "\n".join(lines) + "\n"
+        if document in VERBATIM:
+            section = r"(?sm)^(## [^\n]*)\n(.*?)\n(?=## |\Z)"
+            text = re.sub(section, r"\1\n\n~~~text\n\2\n~~~\n\n", text)
+        self.write(document, text)
 
     def relinked(self, document, number, line):
         """`line` with other links, except in code."""
@@ -128,8 +133,9 @@ class Pages:
         if source.suffix != ".md":  # which would be a page
             self.write(path, source.read_text())
             name = f"[{name}]({source.name}) as a file"
-        self.write(page, f"# {source.name}\n\n{name}\n\n~~~~~~{LANGUAGES.get(source.suffix, 'text')}\n"
-                         f"{source.read_text()}\n~~~~~~\n")
+        language = LANGUAGES.get(source.suffix, "text")
+        self.write(page, f"# {source.name}\n\n{name}\n\n"
+                         f"~~~~~~{language}\n{source.read_text()}\n~~~~~~\n")
 
 
 def dot_of(document, diagram):
@@ -143,7 +149,7 @@ def dot_of(document, diagram):
         if match is None:
             if line.strip() == "flowchart TD":
                 continue
-            raise SiteError(f"{document}: '{line.strip()}' is no arrow that .ci/site/pages.py reads")
+            raise SiteError(f"{document}: '{line.strip()}' is no arrow that pages.py reads")
         start, start_box, start_text, label, end, end_box, end_text = match.groups()
         for name, box, text in ((start, start_box, start_text), (end, end_box, end_text)):
             if text:
