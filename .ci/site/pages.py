@@ -14,6 +14,7 @@ VERBATIM = {"experiments/commands/commands.md"}  # the program prints its sectio
 PICTURES = {".svg", ".png"}
 
 FENCE = re.compile(r"\s*(```+|~~~+)")
+ITEM = re.compile(r"([-*]|\d+\.) ")
 CODE_SPAN = re.compile(r"(`+)(?!`).*?(?<!`)\1(?!`)")
 LINK = re.compile(r"(\]\()([^)#:\s]+)((?:#[^)\s]*)?\))")
 
@@ -72,7 +73,7 @@ class Pages:
     def copy(self, document):
         """Copies a document. Its links to what is no document lead to pages, and its diagrams
         become pictures."""
-        lines, fence, diagram = [], None, None
+        lines, fence, diagram, in_list = [], None, None, False
         for number, line in enumerate((self.root / document).read_text().splitlines(), 1):
             begin = FENCE.match(line)
             if fence is None and begin:
@@ -86,6 +87,10 @@ class Pages:
                     continue
             elif fence is None:
                 line = self.relinked(document, number, line)
+                if line and not line.startswith(" "):
+                    in_list = ITEM.match(line) is not None or (in_list and lines[-1] != "")
+                if in_list:  # where mkdocs wants four spaces for a list in a list, GitHub two
+                    line = " " * (len(line) - len(line.lstrip())) + line
             if diagram is None:
                 lines.append(line)
             elif not begin:

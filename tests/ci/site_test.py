@@ -180,13 +180,13 @@ class InABrowser(unittest.TestCase):
         self.assertIn("STATISTICS.html", found)
 
 
-class Mistakes(unittest.TestCase):
+class OneDocument(unittest.TestCase):
     """In a repository of one document."""
 
     def built(self, document, nav="- README.md"):
         folder = tempfile.TemporaryDirectory(prefix="montecarta_site_")
         self.addCleanup(folder.cleanup)
-        root = pathlib.Path(folder.name)
+        root = self.root = pathlib.Path(folder.name)
         shutil.copytree(ROOT / ".ci", root / ".ci")
         config = root / ".ci" / "site" / "mkdocs.yml"
         config.write_text(re.sub(r"(?s)\nnav:.*", f"\nnav:\n  {nav}\n", config.read_text()))
@@ -194,7 +194,13 @@ class Mistakes(unittest.TestCase):
         (root / "study.ini").write_text("[study]\n")
         return build(root, root / "build-site")
 
-    def test_none(self):
+    def test_a_list_in_a_list(self):
+        document = "# One\n\n- a, which\n  goes on\n  - b\n- c\n\nText.\n"
+        self.assertEqual(self.built(document).returncode, 0)
+        html = (self.root / "build-site" / "site" / "index.html").read_text()
+        self.assertRegex(html, r"(?s)<li>a, which\s*goes on<ul>\s*<li>b</li>\s*</ul>")
+
+    def test_no_mistake(self):
         built = self.built("# One\n\n[title](#one), [study](study.ini), `[code](study.hpp)`\n")
         self.assertEqual(built.returncode, 0, built.stderr)
 
