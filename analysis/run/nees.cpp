@@ -4,8 +4,9 @@
 #include "analysis/run/whitened_run.hpp"
 #include "analysis/statistics/distributions.hpp"
 #include "analysis/statistics/spread.hpp"
+#include "analysis/statistics/symmetric_eigen.hpp"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <array>
@@ -151,12 +152,12 @@ Nees nees_in_range(const Eigen::VectorXd& error, const Eigen::MatrixXd& P,
   const Eigen::MatrixXd block = P(open, open);
   const Eigen::VectorXd scale = block.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd correlation = scale.asDiagonal() * block * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(correlation);
-  const Eigen::VectorXd along = solver.eigenvectors().transpose() * scale.cwiseProduct(error(open));
+  const SymmetricEigen eigen = symmetric_eigen(correlation);
+  const Eigen::VectorXd along = eigen.vectors.transpose() * scale.cwiseProduct(error(open));
   Nees sample = {0.0, 0};
   double outside = 0.0;
   for (Eigen::Index k = 0; k < along.size(); ++k) {
-    const double eigenvalue = solver.eigenvalues()(k);
+    const double eigenvalue = eigen.values(k);
     if (!(eigenvalue >= kMostNegative)) return kUnusableSample;
     if (eigenvalue > kLeastPivot) {
       sample.value += along(k) * along(k) / eigenvalue;

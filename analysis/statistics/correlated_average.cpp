@@ -3,9 +3,10 @@
 
 #include "analysis/statistics/distributions.hpp"
 #include "analysis/statistics/nees_bounds.hpp"
+#include "analysis/statistics/symmetric_eigen.hpp"
 #include "engine/errors.hpp"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <array>
@@ -170,10 +171,7 @@ class ComponentLaw {
 
   /// Adds the squares to `terms`, with weights divided by `dimension`.
   void add_to(std::vector<WeightedSquares>& terms, double dimension) const {
-    const Eigen::VectorXd slow =
-        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(between_blocks(), Eigen::EigenvaluesOnly)
-            .eigenvalues()
-            .cwiseMax(0.0);
+    const Eigen::VectorXd slow = symmetric_eigenvalues(between_blocks()).cwiseMax(0.0);
     for (const double weight : slow) terms.push_back({weight / dimension, 1.0});
     // The remaining variance lies within the blocks. It gets equal weights that have its sum and
     // its sum of squares.

@@ -2,9 +2,9 @@
 #include "analysis/verdict/worst_direction.hpp"
 
 #include "analysis/statistics/run_mean.hpp"
+#include "analysis/statistics/symmetric_eigen.hpp"
 
 #include <Eigen/Core>
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <utility>
@@ -40,10 +40,10 @@ Eigen::MatrixXd mean_products(const std::vector<Samples>& runs, std::size_t firs
 
 /// Returns the eigenvector of the eigenvalue that is farthest from zero.
 Eigen::VectorXd farthest_direction(const Eigen::MatrixXd& products) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(products);
+  const SymmetricEigen eigen = symmetric_eigen(products);
   Eigen::Index farthest = 0;
-  solver.eigenvalues().cwiseAbs().maxCoeff(&farthest);
-  return solver.eigenvectors().col(farthest);
+  eigen.values.cwiseAbs().maxCoeff(&farthest);
+  return eigen.vectors.col(farthest);
 }
 
 /// Returns the mean over scans of the products of different components of a run along a direction.

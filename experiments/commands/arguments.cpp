@@ -7,6 +7,7 @@
 #include "engine/text/wrapped_text.hpp"
 #include "engine/threads/thread_budget.hpp"
 #include "experiments/files/files.hpp"
+#include "experiments/study/known_filters.hpp"
 #include "experiments/study/make_plan.hpp"
 #include "experiments/text/words.hpp"
 
@@ -314,7 +315,7 @@ ExternalPrograms programs_of(const Study& study, const Arguments& arguments) {
 Study study_of(const Arguments& arguments) {
   const std::string& name = arguments.operands().front();
   const auto shipped = std::filesystem::exists(name) ? std::nullopt : shipped_study(name);
-  return read_study(shipped.value_or(name), arguments.texts("set"));
+  return read_study(shipped.value_or(name), known_filters(), arguments.texts("set"));
 }
 
 StudyPlan plan_of(const Study& study, const Arguments& arguments) {

@@ -10,6 +10,7 @@
 #include "engine/text/visible_text.hpp"
 #include "experiments/judging/imported_plan.hpp"
 #include "experiments/recordings/recorded_drive.hpp"
+#include "experiments/study/known_filters.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>
@@ -69,7 +70,8 @@ Study study_in(const ResultFile& file, const Arguments& arguments) {
     overrides.push_back("scenario.path=" + joined(paths));
   }
   const std::string name = file.path().string() + " (the study in it)";
-  Study study = parse_study(file.study_text(), name, file.path().parent_path(), overrides);
+  Study study =
+      parse_study(file.study_text(), name, file.path().parent_path(), known_filters(), overrides);
   if (sha256(resolved_text(study)) != file.study_sha256())
     std::cerr << "montecarta: another version of montecarta made " << file.path().string()
               << "; settings that it did not know have their defaults\n";

@@ -140,8 +140,10 @@ Parameter command_option() {
       .example = "\"python3 my_filter.py\""};
 }
 
-/// The filter kind of external programs: "cell = external command="python3 my_filter.py"
-/// label=mine".
+}  // namespace
+
+bool starts_program(const FilterKind& filter) { return filter.name == kExternal; }
+
 FilterKind external_kind() {
   return {
       .name = kExternal,
@@ -157,19 +159,6 @@ FilterKind external_kind() {
                "whether a process is kept for all runs of a worker or started anew for each run")},
       .sensors = {},
       .make = make_external};
-}
-
-}  // namespace
-
-bool starts_program(const FilterKind& filter) { return filter.name == kExternal; }
-
-std::span<const FilterKind> known_filters() {
-  static const std::vector<FilterKind> kinds = [] {
-    std::vector<FilterKind> all(filter_kinds().begin(), filter_kinds().end());
-    all.push_back(external_kind());
-    return all;
-  }();
-  return kinds;
 }
 
 }  // namespace montecarta::experiments

@@ -4,7 +4,7 @@
 #include "engine/core/slam_filter.hpp"
 #include "experiments/external/child_process.hpp"
 #include "experiments/external/messages.hpp"
-#include "filters/factory.hpp"
+#include "filters/setup/filter_kind.hpp"
 #include "filters/setup/filter_setup.hpp"
 
 #include <atomic>
@@ -90,7 +90,7 @@ inline constexpr const char* kAllowExternal = "allow-external";
 /// Returns whether cells of this kind start a program.
 bool starts_program(const FilterKind& filter);
 
-/// All filters that a study may name: those of the filter table, then `external`.
-std::span<const FilterKind> known_filters();
+/// The kind of external programs: `cell = external command="python3 my_filter.py" label=mine`.
+FilterKind external_kind();
 
 }  // namespace montecarta::experiments

@@ -2,7 +2,6 @@
 #include "experiments/study/cell_spec.hpp"
 
 #include "engine/errors.hpp"
-#include "experiments/external/external_filter.hpp"
 #include "experiments/study/vehicle_and_sensor.hpp"
 #include "experiments/text/words.hpp"
 
@@ -188,30 +187,32 @@ void refuse_equal_labels(const std::vector<CellSpec>& cells) {
   }
 }
 
-std::string filters_for(const std::string& sensor) {
+std::string filters_for(const std::string& sensor, std::span<const FilterKind> filters) {
   std::vector<std::string> names;
-  for (const FilterKind& kind : known_filters()) {
+  for (const FilterKind& kind : filters) {
     if (kind.sensors.empty() || std::ranges::find(kind.sensors, sensor) != kind.sensors.end())
       names.push_back(kind.name);
   }
   return joined(names);
 }
 
-void refuse_kind(const Settings& settings, const CellSpec& cell) {
+void refuse_kind(const Settings& settings, const CellSpec& cell,
+                 std::span<const FilterKind> filters) {
   const std::vector<std::string>& taken = cell.filter->sensors;
   const std::string& sensor = settings.text("belief", "sensor");
   if (taken.empty() || std::ranges::find(taken, sensor) != taken.end()) return;
   throw StudyError(cell.place + ": " + cell.filter->name + " takes no sensor " + sensor +
-                   " (it takes " + joined(taken) + "): use one of " + filters_for(sensor) +
+                   " (it takes " + joined(taken) + "): use one of " + filters_for(sensor, filters) +
                    ", or another sensor in [scenario] or [belief]");
 }
 
-void refuse_mounting(const CellSpec& cell, const Sensor& sensor) {
+void refuse_mounting(const CellSpec& cell, const Sensor& sensor,
+                     std::span<const FilterKind> filters) {
   if (cell.filter->sensors.empty() || sensor.mounting.is_none()) return;
   throw StudyError(cell.place + ": " + cell.filter->name +
                    " takes no sensor that is mounted elsewhere than at the pose (mount_forward, "
                    "mount_left, mount_turn_deg): set these to 0, or use one of " +
-                   filters_for(name_of(sensor)));
+                   filters_for(name_of(sensor), filters));
 }
 
 void refuse_association(const Settings& settings, const CellSpec& cell, const Sensor& sensor) {
@@ -262,11 +263,12 @@ std::string cell_line(const CellSpec& cell) {
   return line;
 }
 
-void refuse_sensors(const Settings& settings, std::span<const CellSpec> cells) {
+void refuse_sensors(const Settings& settings, std::span<const CellSpec> cells,
+                    std::span<const FilterKind> filters) {
   const Sensor sensor = sensor_of(settings, "belief");
   for (const CellSpec& cell : cells) {
-    refuse_kind(settings, cell);
-    refuse_mounting(cell, sensor);
+    refuse_kind(settings, cell, filters);
+    refuse_mounting(cell, sensor, filters);
     refuse_association(settings, cell, sensor);
   }
 }

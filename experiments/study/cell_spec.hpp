@@ -2,7 +2,7 @@
 #pragma once
 
 #include "experiments/study/settings.hpp"
-#include "filters/factory.hpp"
+#include "filters/setup/filter_kind.hpp"
 
 #include <span>
 #include <string>
@@ -41,7 +41,9 @@ std::vector<CellSpec> read_cells(std::span<const IniEntry> entries, const std::s
 std::string cell_line(const CellSpec& cell);
 
 /// Throws StudyError if the filter of a cell does not accept the sensor of [belief] or its
-/// mounting, or must associate detections that do not determine the position of a landmark.
-void refuse_sensors(const Settings& settings, std::span<const CellSpec> cells);
+/// mounting, or must associate detections that do not determine the position of a landmark. The
+/// error suggests one of `filters`.
+void refuse_sensors(const Settings& settings, std::span<const CellSpec> cells,
+                    std::span<const FilterKind> filters);
 
 }  // namespace montecarta::experiments

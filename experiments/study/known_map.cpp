@@ -2,7 +2,6 @@
 #include "experiments/study/known_map.hpp"
 
 #include "engine/errors.hpp"
-#include "experiments/external/external_filter.hpp"
 #include "experiments/text/words.hpp"
 
 #include <vector>
@@ -11,9 +10,9 @@ namespace montecarta::experiments {
 namespace {
 
 /// The filters that can be started from a known map, without the plain ones.
-std::string filters_with_prior() {
+std::string filters_with_prior(std::span<const FilterKind> filters) {
   std::vector<std::string> names;
-  for (const FilterKind& kind : known_filters()) {
+  for (const FilterKind& kind : filters) {
     if (kind.takes_prior && !kind.name.starts_with("plain_")) names.push_back(kind.name);
   }
   return joined(names);
@@ -47,7 +46,7 @@ PriorDeviations prior_deviations_of(const Settings& settings, const std::string&
 }
 
 void refuse_known_map(const Settings& settings, std::span<const CellSpec> cells,
-                      std::size_t landmarks) {
+                      std::span<const FilterKind> filters, std::size_t landmarks) {
   if (!map_is_known(settings)) return refuse_deviations(settings);
   if (landmarks == 0) {
     throw StudyError(settings.place("belief", "map") +
@@ -59,7 +58,7 @@ void refuse_known_map(const Settings& settings, std::span<const CellSpec> cells,
     throw StudyError(cell.place + ": " + cell.filter->name +
                      " with belief.map = known (it cannot be started from a known map): use one "
                      "of " +
-                     filters_with_prior() + ", or set belief.map = estimated");
+                     filters_with_prior(filters) + ", or set belief.map = estimated");
   }
 }
 

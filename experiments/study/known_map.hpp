@@ -20,9 +20,9 @@ bool map_is_exact(const Settings& settings);
 PriorDeviations prior_deviations_of(const Settings& settings, const std::string& in);
 
 /// Throws StudyError if the map is known but a filter cannot use it or the drive does not have it,
-/// or if the map is not known but the start or the map has a deviation. `landmarks` is the number
-/// of known positions.
+/// or if the map is not known but the start or the map has a deviation. The error suggests one of
+/// `filters`. `landmarks` is the number of known positions.
 void refuse_known_map(const Settings& settings, std::span<const CellSpec> cells,
-                      std::size_t landmarks);
+                      std::span<const FilterKind> filters, std::size_t landmarks);
 
 }  // namespace montecarta::experiments

@@ -2,7 +2,6 @@
 #include "experiments/study/study.hpp"
 
 #include "engine/errors.hpp"
-#include "experiments/external/external_filter.hpp"
 #include "experiments/files/files.hpp"
 #include "experiments/study/known_map.hpp"
 #include "experiments/study/read_drives.hpp"
@@ -127,15 +126,15 @@ void refuse_world(const IniText& ini, const Settings& settings) {
 }  // namespace
 
 Study parse_study(const std::string& text, const std::string& name,
-                  const std::filesystem::path& folder, std::span<const std::string> overrides) {
+                  const std::filesystem::path& folder, std::span<const FilterKind> filters,
+                  std::span<const std::string> overrides) {
   IniText ini = read_ini(text, name);
   apply(overrides, ini);
   refuse_unknown_sections(ini);
   const Settings settings(ini.entries, name);
   const bool controls_are_measured = settings.scenario_kind() == "simulated" &&
                                      settings.text("scenario", "noise") == "measured-control";
-  Study study{
-      settings, read_cells(ini.entries, name, known_filters(), controls_are_measured), {}, {}, {}};
+  Study study{settings, read_cells(ini.entries, name, filters, controls_are_measured), {}, {}, {}};
   if (study.settings.scenario_kind() == "simulated") {
     study.world = world_of(ini, study.settings, folder);
     study.settings.replace("scenario", "world", study.world.name);
@@ -146,8 +145,8 @@ Study parse_study(const std::string& text, const std::string& name,
     if (!is_given && identities_of(study) > 0)
       study.settings.replace("association", "kind", "known");
   }
-  refuse_sensors(study.settings, study.cells);
-  refuse_known_map(study.settings, study.cells, landmarks_of(study).size());
+  refuse_sensors(study.settings, study.cells, filters);
+  refuse_known_map(study.settings, study.cells, filters, landmarks_of(study).size());
   study.until = parse_stopping_rule(study.settings.text("study", "until"),
                                     study.settings.place("study", "until"));
   if (study.until) study.settings.replace("study", "until", text_of(*study.until));
@@ -168,8 +167,9 @@ std::size_t identities_of(const Study& study) {
   return most;
 }
 
-Study read_study(const std::filesystem::path& path, std::span<const std::string> overrides) {
-  return parse_study(text_file(path), path.string(), path.parent_path(), overrides);
+Study read_study(const std::filesystem::path& path, std::span<const FilterKind> filters,
+                 std::span<const std::string> overrides) {
+  return parse_study(text_file(path), path.string(), path.parent_path(), filters, overrides);
 }
 
 std::vector<std::pair<std::string, std::string>> stated_settings(const Settings& settings,

@@ -34,14 +34,17 @@ const std::vector<Eigen::Vector2d>& landmarks_of(const Study& study);
 /// Number of landmarks that detections can name; 0 if they have no identities.
 std::size_t identities_of(const Study& study);
 
-/// Reads a study file. `overrides` are "section.key=value" as given to --set; "cells.cell=..."
-/// replaces all cells. Throws StudyError with file, line, key and reason.
-Study read_study(const std::filesystem::path& path, std::span<const std::string> overrides = {});
+/// Reads a study file whose cells may name `filters`, which must outlive the study. `overrides` are
+/// "section.key=value" as given to --set; "cells.cell=..." replaces all cells. Throws StudyError
+/// with file, line, key and reason.
+Study read_study(const std::filesystem::path& path, std::span<const FilterKind> filters,
+                 std::span<const std::string> overrides = {});
 
 /// Reads a study from a text. `name` stands before line numbers in errors. Relative paths of worlds
 /// begin in `folder`.
 Study parse_study(const std::string& text, const std::string& name,
-                  const std::filesystem::path& folder, std::span<const std::string> overrides = {});
+                  const std::filesystem::path& folder, std::span<const FilterKind> filters,
+                  std::span<const std::string> overrides = {});
 
 /// Pairs (key, value) of a section as the resolved text has them: without settings that have no
 /// effect and came after the first studies.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/runs/monte_carlo.hpp"
+#include "experiments/study/known_filters.hpp"
 #include "experiments/study/make_plan.hpp"
 #include "experiments/study/study.hpp"
 
@@ -41,7 +42,8 @@ landmark = 4, 6
 /// Runs a study and leaves its result at `path`.
 inline void write_studied_result(const std::filesystem::path& path, const std::string& text,
                                  const std::vector<std::string>& overrides = {}) {
-  const experiments::Study study = experiments::parse_study(text, "tiny.ini", ".", overrides);
+  const experiments::Study study =
+      experiments::parse_study(text, "tiny.ini", ".", experiments::known_filters(), overrides);
   run_study(experiments::make_plan(study, {}), {.output = path, .force = true, .quiet = true});
 }
 

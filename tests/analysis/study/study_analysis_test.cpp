@@ -12,6 +12,7 @@
 #include "analysis/verdict/joint_nees.hpp"
 #include "engine/errors.hpp"
 #include "engine/records/merge.hpp"
+#include "experiments/study/known_filters.hpp"
 #include "tests/analysis/recorded_result.hpp"
 #include "tests/analysis/studied_result.hpp"
 #include "tests/analysis/synthetic_result.hpp"
@@ -209,8 +210,9 @@ class RandomMaps : public ::testing::Test {
   }
   /// Some runs of the same study.
   void write_shard(const std::string& name, std::uint64_t first, std::uint64_t last) const {
-    const experiments::Study study = experiments::parse_study(
-        kTinyLoop, "tiny.ini", ".", std::vector<std::string>{"scenario.map=random"});
+    const experiments::Study study =
+        experiments::parse_study(kTinyLoop, "tiny.ini", ".", experiments::known_filters(),
+                                 std::vector<std::string>{"scenario.map=random"});
     run_study(experiments::make_plan(study, experiments::RunRange{first, last}),
               {.output = folder_ / name, .quiet = true});
   }

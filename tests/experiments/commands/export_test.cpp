@@ -3,6 +3,7 @@
 #include "experiments/drives/simulated_drive.hpp"
 #include "experiments/recordings/log_csv.hpp"
 #include "experiments/recordings/recorded_drive.hpp"
+#include "experiments/study/known_filters.hpp"
 #include "experiments/study/make_drives.hpp"
 #include "tests/doubles/matchers.hpp"
 #include "tests/experiments/commands/program.hpp"
@@ -49,7 +50,7 @@ TEST_F(Export, ALogReadBackIsTheSameDrive) {
     for (const std::string& text : overrides) words.insert(words.end(), {"--set", text});
     const Called called = run_export(words);
     ASSERT_EQ(called.code, 0) << called.err;
-    const Study study = read_study(folder_ / "blink.ini", overrides);
+    const Study study = read_study(folder_ / "blink.ini", known_filters(), overrides);
     const auto drives = drives_of(study, study.settings.count("study", "seed"));
     Drive simulated, read;
     for (const std::uint64_t run : {0, 2}) {
@@ -87,7 +88,7 @@ TEST_F(Export, AnEstimatorIsGivenAKnownMapAndStartWithTheirErrors) {
   std::vector<std::string> words = {"--runs", "1:2"};
   for (const std::string& setting : overrides) words.insert(words.end(), {"--set", setting});
   ASSERT_EQ(run_export(words).code, 0);
-  const Study study = read_study(folder_ / "blink.ini", overrides);
+  const Study study = read_study(folder_ / "blink.ini", known_filters(), overrides);
   Drive drive;
   drives_of(study, study.settings.count("study", "seed"))->generate(1, drive);
   std::filesystem::copy(folder_ / "drives/truth/run_0001/reference.csv",

@@ -3,6 +3,7 @@
 #include "engine/errors.hpp"
 #include "engine/records/result_file.hpp"
 #include "engine/runs/monte_carlo.hpp"
+#include "experiments/study/known_filters.hpp"
 #include "experiments/study/make_plan.hpp"
 #include "experiments/text/words.hpp"
 #include "tests/analysis/studied_result.hpp"
@@ -35,8 +36,8 @@ class ExternalStudy : public testing::Test {
 
   StudyPlan plan_of(const std::string& cell, std::vector<std::string> overrides = {}) const {
     overrides.push_back("cells.cell=" + cell);
-    return make_plan(parse_study(kTinyLoop, "tiny.ini", ".", overrides), std::nullopt,
-                     ExternalPrograms::allowed);
+    return make_plan(parse_study(kTinyLoop, "tiny.ini", ".", known_filters(), overrides),
+                     std::nullopt, ExternalPrograms::allowed);
   }
 
   /// The result of all runs.
@@ -237,7 +238,8 @@ TEST_F(External, WhatACommandLacksIsSaid) {
 
 TEST_F(External, TheResolvedTextReadsBack) {
   const StudyPlan plan = plan_of(scripted("say 99 'a, b \\\"c\\\" \\\\ d'"));
-  const StudyPlan again = make_plan(parse_study(plan.resolved_text, "again.ini", "."));
+  const StudyPlan again =
+      make_plan(parse_study(plan.resolved_text, "again.ini", ".", known_filters()));
   EXPECT_EQ(again.resolved_text, plan.resolved_text);
   EXPECT_EQ(again.cells.front().settings, plan.cells.front().settings);
   EXPECT_THROW(again.cells.front().make_filter(), StudyError);  // nobody allowed it

@@ -5,6 +5,7 @@
 #include "experiments/judging/read_rows.hpp"
 #include "experiments/recordings/drive_log.hpp"
 #include "experiments/recordings/log_csv.hpp"
+#include "experiments/study/known_filters.hpp"
 #include "experiments/study/study.hpp"
 #include "experiments/worlds/world.hpp"
 #include "tests/doubles/complaint.hpp"
@@ -82,7 +83,7 @@ TEST(InputsFuzz, Study) {
                   "[scenario]\nworld = yard.csv\nnoise = matched\nscan_rate = 5 # Hz\n"
                   "[association]\nkind = nearest\n[record]\ncolumns = pose, covariance\n"
                   "[cells]\ncell = ekf_slam\ncell = fastslam2 particles=3,10 motion_noise=1,2\n",
-                  [](const fs::path& path) { resolved_text(read_study(path)); });
+                  [](const fs::path& path) { resolved_text(read_study(path, known_filters())); });
 }
 
 void expect_order_and_limits(const DriveLog& log) {

@@ -2,6 +2,7 @@
 #include "analysis/run/map_scores.hpp"
 #include "analysis/run/reference_scores.hpp"
 #include "engine/core/slam_filter.hpp"
+#include "experiments/study/known_filters.hpp"
 #include "experiments/study/make_plan.hpp"
 #include "experiments/study/study.hpp"
 #include "tests/doubles/published_data.hpp"
@@ -63,7 +64,7 @@ Journey journey(const std::string& name, const std::string& noise, const std::st
   const Study study = parse_study(
       "[study]\nname = trial\nruns = 1\n[scenario]\nkind = log\npath = log\n[belief]\n" + kCar +
           noise + "[association]\n" + association + "[cells]\ncell = " + cell + "\n",
-      "trial.ini", folder.path());
+      "trial.ini", folder.path(), known_filters());
   const StudyPlan plan = make_plan(study, std::nullopt);
   Journey made;
   made.itinerary = plan.drives->itinerary();

@@ -7,6 +7,7 @@
 #include "experiments/recordings/log_csv.hpp"
 #include "experiments/recordings/recorded_drive.hpp"
 #include "experiments/study/enough_runs.hpp"
+#include "experiments/study/known_filters.hpp"
 #include "experiments/study/make_drives.hpp"
 #include "experiments/study/settings.hpp"
 #include "experiments/study/study.hpp"
@@ -195,7 +196,7 @@ TEST(StoppingRule, IsPartOfTheStudyInOneSpelling) {
       << "all runs are needed";
   EXPECT_TRUE(make_plan(parsed(study_until("verdict")), RunRange{0, 10}).is_enough)
       << "a part can refuse";
-  const Study again = parse_study(resolved_text(study), "again.ini", ".");
+  const Study again = parse_study(resolved_text(study), "again.ini", ".", known_filters());
   EXPECT_EQ(resolved_text(again), resolved_text(study));
 }
 
@@ -256,7 +257,7 @@ class RecordedStudy : public ::testing::Test {
     write_log_csv(log_, folder_ / "drive");
   }
   Study read(const std::string& text, const std::vector<std::string>& overrides = {}) const {
-    return parse_study(text, "trial.ini", folder_.path(), overrides);
+    return parse_study(text, "trial.ini", folder_.path(), known_filters(), overrides);
   }
   std::string complaint(const std::vector<std::string>& overrides) const {
     return engine::complaint_of([&] { make_plan(read(kStudy, overrides), std::nullopt); });

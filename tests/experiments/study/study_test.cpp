@@ -3,6 +3,7 @@
 
 #include "engine/errors.hpp"
 #include "experiments/study/cell_spec.hpp"
+#include "experiments/study/known_filters.hpp"
 #include "tests/doubles/matchers.hpp"
 #include "tests/experiments/study/study_text.hpp"
 
@@ -112,8 +113,8 @@ TEST(Study, IsOverriddenBySetOptionsAndRefusesAMissingFile) {
   EXPECT_THAT(complaint(kGoodStudy, {"runs"}), HasSubstr("section.key=value"));
   EXPECT_THAT(complaint(kGoodStudy, {"study.runs=7", "study.runs=8"}), HasSubstr("given twice"));
   EXPECT_THAT(complaint(kGoodStudy, {"study.title=no # 1"}), HasSubstr("#"));
-  EXPECT_THROW(read_study("no/such/study.ini"), StudyError);
-  EXPECT_THROW(read_study("/"), StudyError);
+  EXPECT_THROW(read_study("no/such/study.ini", known_filters()), StudyError);
+  EXPECT_THROW(read_study("/", known_filters()), StudyError);
 }
 
 TEST(ResolvedText, IsAFixedPointThatDoesNotDependOnSpelling) {

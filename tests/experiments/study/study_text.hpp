@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "experiments/study/known_filters.hpp"
 #include "experiments/study/study.hpp"
 #include "tests/doubles/complaint.hpp"
 
@@ -25,7 +26,7 @@ inline std::string with(const std::string& old, const std::string& fresh) {
 }
 
 inline Study parsed(const std::string& text, const std::vector<std::string>& overrides = {}) {
-  return parse_study(text, "trial.ini", ".", overrides);
+  return parse_study(text, "trial.ini", ".", known_filters(), overrides);
 }
 
 /// The complaint of the parser; "nothing" if it has none.

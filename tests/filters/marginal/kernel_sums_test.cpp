@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/marginal/kernel_sums.hpp"
 
-#include "filters/plain/particle.hpp"
+#include "filters/plain/gaussian.hpp"
 #include "tests/filters/marginal/kernel_clouds.hpp"
 
 #include <gtest/gtest.h>
