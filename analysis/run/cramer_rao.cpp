@@ -2,6 +2,7 @@
 #include "analysis/run/cramer_rao.hpp"
 
 #include "analysis/run/joint_bound.hpp"
+#include "analysis/run/run_reader.hpp"
 #include "analysis/run/simulated_world.hpp"
 #include "engine/core/drive.hpp"
 #include "filters/models/ackermann.hpp"
@@ -149,7 +150,9 @@ CramerRaoBound squared_bound(const SimulatedWorld& world, const TruePath& path) 
   return bound;
 }
 
-BoundOfStudy::BoundOfStudy(const ResultFile& file) : world_(simulated_world_of(file)) {
+BoundOfStudy::BoundOfStudy(const ResultFile& file)
+    : world_(simulated_world_of(file)),
+      first_judged_(static_cast<std::ptrdiff_t>(judged_scans_of(file).first)) {
   if (!world_) {
     missing_ = "the file does not describe a simulated vehicle and its sensor";
   } else if (!(world_->sigma_observation.minCoeff() > 0.0)) {
@@ -168,6 +171,9 @@ CramerRaoBound BoundOfStudy::result() const {
   if (!missing_.empty()) return none_for(missing_);
   CramerRaoBound bound = root_mean(squares_);
   bound.is_bound = world_->same_path;
+  for (auto* const series : {&bound.position, &bound.heading}) {
+    if (!series->empty()) series->erase(series->begin(), series->begin() + first_judged_);
+  }
   return bound;
 }
 

@@ -244,6 +244,9 @@ void add_study(const SectionOfTable& study) {
                "factor within which the NEES counts as consistent. A filter is consistent if its "
                "squared errors are shown to be too large or too small by this factor at "
                "most.");
+  study.number("judge_from", "s", "0", 0, 1e9,
+               "time from which scans are judged. Verdicts, tables and figures over runs leave out "
+               "earlier scans, for a filter that first has to converge.");
 }
 
 /// The default gates are chi-square 5.991 (95 %) and 25 with two degrees of freedom.

@@ -106,6 +106,7 @@ struct SilentSetting {
 
 bool is_silent(const std::string& section, const std::string& key, const std::string& value) {
   static const std::vector<SilentSetting> silent{{"study", "until", ""},
+                                                 {"study", "judge_from", "0"},
                                                  {"record", "full_runs", "0"},
                                                  {"scenario", "map_sigma_m", "0"},
                                                  {"scenario", "start_sigma_m", "0"},
