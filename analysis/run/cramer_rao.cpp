@@ -138,6 +138,11 @@ CramerRaoBound squared_bound(const SimulatedWorld& world, const TruePath& path) 
   for (const std::uint32_t scan_row : path.scan_rows) {
     for (; row <= scan_row; ++row) move_along(path, row, world.vehicle, joint);
     const Pose& pose = path.rows[scan_row];
+    const std::size_t scan = bound.position.size() + 1;
+    const bool has_fix = world.scans_per_fix > 0 && scan % world.scans_per_fix == 0;
+    if (has_fix && !joint.fix(world.sigma_fix * world.sigma_fix)) {
+      return none_for("the noise of the fixes is too small to compute with");
+    }
     if (world.detected > 0.0 && !joint.scan(pose, seen_from(pose, world, path.landmarks))) {
       return none_for("the noise is too small to compute with");
     }

@@ -6,6 +6,8 @@
 
 #include <Eigen/Cholesky>
 
+#include <utility>
+
 namespace montecarta::analysis {
 namespace {
 
@@ -113,6 +115,17 @@ bool JointBound::correct(const Pose& pose, std::span<const SeenLandmark> landmar
         observations[k].by_landmark * gain.middleRows<2>(row_of(landmarks[k].identity));
     S.diagonal().segment<2>(i) += observation_variance_;
   }
+  return subtract(std::move(gain), S);
+}
+
+bool JointBound::fix(double variance) {
+  finish_motion();
+  const Eigen::MatrixXd S = pose_.topLeftCorner<2, 2>() + variance * Eigen::Matrix2d::Identity();
+  return subtract(joint_.block(0, 0, size_, 2), S) && pose_.allFinite();
+}
+
+/// P <- P - W W' with W = `gain` L^-T and S = L L'.
+bool JointBound::subtract(Eigen::MatrixXd gain, const Eigen::MatrixXd& S) {
   const Eigen::LLT<Eigen::MatrixXd> factor(S);
   if (factor.info() != Eigen::Success) return false;
   factor.matrixU().solveInPlace<Eigen::OnTheRight>(gain);

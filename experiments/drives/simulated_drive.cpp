@@ -171,6 +171,24 @@ void SimulatedDrive::generate(std::uint64_t run, Drive& drive) const {
   } else {
     generate_measured(run, drive);
   }
+  take_fixes(run, drive);
+}
+
+/// Fixes are taken at every n-th scan, n = scans_per_fix. Their noise is drawn apart from that of
+/// the detections.
+void SimulatedDrive::take_fixes(std::uint64_t run, Drive& drive) const {
+  drive.fixes.clear();
+  if (scenario_.scans_per_fix == 0) return;
+  drive.fixes.resize(itinerary_.scans());
+  for (std::size_t s = scenario_.scans_per_fix; s <= itinerary_.scans();
+       s += scenario_.scans_per_fix) {
+    const std::uint32_t step = itinerary_.scan_step[s - 1];
+    RngStream draw(with(place(run, step), Draw::world_fix, 0));
+    const double x = draw.normal(), y = draw.normal();
+    const Pose& truth = drive.truth[step];
+    drive.fixes[s - 1] =
+        PositionFix(truth.x + scenario_.sigma_fix * x, truth.y + scenario_.sigma_fix * y);
+  }
 }
 
 void SimulatedDrive::drive_without_noise() {

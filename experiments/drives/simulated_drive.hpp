@@ -65,6 +65,9 @@ struct Scenario {
   double sigma_forward = 0.1;
   double sigma_left = 0.1;  ///< [m] standard deviation of a relative position across that axis
   double min_range = 0.0;   ///< [m] least measured range
+  /// Number of scans from one fix of the position to the next; 0: there are none.
+  std::uint32_t scans_per_fix = 0;
+  double sigma_fix = 1.0;  ///< [m] standard deviation of a fix, in x and in y
 };
 
 /// A landmark in view and its detection by a sensor without noise.
@@ -176,6 +179,7 @@ class SimulatedDrive final : public DriveSource {
   void move_measured(std::uint64_t run, Drive& drive) const;
   void scan(const StreamIdentity& here, const Pose& pose, Landmarks landmarks, Drive& drive) const;
   void end_scan(const StreamIdentity& here, Drive& drive) const;
+  void take_fixes(std::uint64_t run, Drive& drive) const;
   std::size_t expected_detections() const;
   /// Returns `control` with the noise of this run and step.
   Control noisy(const Control& control, std::uint64_t run, std::size_t step) const;

@@ -251,6 +251,14 @@ std::vector<CellSpec> read_cells(std::span<const IniEntry> entries, const std::s
   return cells;
 }
 
+std::string filters_that(const std::function<bool(const FilterKind&)>& holds) {
+  std::vector<std::string> names;
+  for (const FilterKind& kind : known_filters()) {
+    if (holds(kind) && !kind.name.starts_with("plain_")) names.push_back(kind.name);
+  }
+  return joined(names);
+}
+
 std::string cell_line(const CellSpec& cell) {
   std::string line = cell.filter->name + " label=" + cell.label;
   for (std::size_t i = 0; i < cell.options.size(); ++i) {

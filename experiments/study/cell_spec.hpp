@@ -4,6 +4,7 @@
 #include "experiments/study/settings.hpp"
 #include "filters/factory.hpp"
 
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -39,6 +40,9 @@ std::vector<CellSpec> read_cells(std::span<const IniEntry> entries, const std::s
 
 /// The line that reads back as this cell: "fastslam2 label=fastslam2_m100 particles=100 ...".
 std::string cell_line(const CellSpec& cell);
+
+/// Names of the filters of which `holds` is true, without the plain ones, for remedies.
+std::string filters_that(const std::function<bool(const FilterKind&)>& holds);
 
 /// Throws StudyError if the filter of a cell does not accept the sensor of [belief] or its
 /// mounting, or must associate detections that do not determine the position of a landmark.

@@ -2,22 +2,12 @@
 #include "experiments/study/known_map.hpp"
 
 #include "engine/errors.hpp"
-#include "experiments/external/external_filter.hpp"
 #include "experiments/text/words.hpp"
 
 #include <vector>
 
 namespace montecarta::experiments {
 namespace {
-
-/// The filters that can be started from a known map, without the plain ones.
-std::string filters_with_prior() {
-  std::vector<std::string> names;
-  for (const FilterKind& kind : known_filters()) {
-    if (kind.takes_prior && !kind.name.starts_with("plain_")) names.push_back(kind.name);
-  }
-  return joined(names);
-}
 
 /// Throws StudyError if a true deviation is given that has no effect.
 void refuse_deviations(const Settings& settings) {
@@ -59,7 +49,8 @@ void refuse_known_map(const Settings& settings, std::span<const CellSpec> cells,
     throw StudyError(cell.place + ": " + cell.filter->name +
                      " with belief.map = known (it cannot be started from a known map): use one "
                      "of " +
-                     filters_with_prior() + ", or set belief.map = estimated");
+                     filters_that([](const FilterKind& kind) { return kind.takes_prior; }) +
+                     ", or set belief.map = estimated");
   }
 }
 

@@ -4,6 +4,7 @@
 #include "engine/errors.hpp"
 #include "experiments/drives/simulated_drive.hpp"
 #include "experiments/recordings/recorded_drive.hpp"
+#include "experiments/study/fixes.hpp"
 #include "experiments/study/known_map.hpp"
 #include "experiments/study/read_drives.hpp"
 #include "experiments/study/vehicle_and_sensor.hpp"
@@ -57,6 +58,8 @@ Scenario scenario_of(const Settings& s) {
   scenario.waypoint_radius = s.number(in, "waypoint_radius");
   scenario.clutter_rate = s.number(in, "clutter_rate");
   scenario.miss_probability = s.number(in, "miss_probability");
+  scenario.scans_per_fix = scans_per_fix(s);
+  if (scenario.scans_per_fix > 0) scenario.sigma_fix = s.number(in, "sigma_fix");
   scenario.start = {s.number(in, "start_x"), s.number(in, "start_y"),
                     wrap(s.radians(in, "start_heading_deg"))};
   return scenario;

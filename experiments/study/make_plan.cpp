@@ -5,6 +5,7 @@
 #include "engine/random/stream.hpp"
 #include "engine/records/columns.hpp"
 #include "experiments/study/enough_runs.hpp"
+#include "experiments/study/fixes.hpp"
 #include "experiments/study/known_map.hpp"
 #include "experiments/study/make_drives.hpp"
 #include "experiments/study/vehicle_and_sensor.hpp"
@@ -28,6 +29,7 @@ Belief belief_of(const Settings& s, const CellSpec& spec) {
   for (double& alpha : control.alpha) alpha *= motion * motion;
   Belief belief{.vehicle = vehicle_of(s, in), .control = control};
   take_sensor(s, in, sensor, belief);
+  if (const auto sigma = believed_sigma_fix(s)) belief.sigma_fix = sensor * *sigma;
   return belief;
 }
 

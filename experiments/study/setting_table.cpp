@@ -176,6 +176,22 @@ void add_recording(const SectionOfTable& scenario) {
       "delay of the time stamps of the scans. A scan is taken this long before its time stamp.");
 }
 
+/// Adds the sensor of the position. It is believed as it is but for its deviation.
+void add_fixes(const SectionOfTable& scenario) {
+  scenario.choice("fixes", {"none", "position"},
+                  "measurements beside the detections of landmarks. With position the filters are "
+                  "given fixes of the position of the vehicle in the world, for instance of a "
+                  "satellite receiver.");
+  scenario.only_if(
+      scenario.number("fix_rate", "Hz", "1", 1e-4, 1e5, "fixes per second; must divide scan_rate"),
+      "fixes", {"position"});
+}
+void add_fix_deviation(const SectionOfTable& section, double least) {
+  Setting& sigma = section.number("sigma_fix", "m", "1", least, 1e6,
+                                  "standard deviation of a fix of the position, in x and in y");
+  sigma.conditions.push_back({"scenario", "fixes", {"position"}});
+}
+
 void add_scenario(std::vector<Setting>& table) {
   const SectionOfTable scenario("scenario", table), simulated("scenario", table, {"simulated"});
   scenario.choice("kind", {"simulated", "log"},
@@ -189,6 +205,8 @@ void add_scenario(std::vector<Setting>& table) {
   simulated.number("clutter_rate", "1", "0", 0, 100, "mean number of false alarms per scan");
   simulated.number("miss_probability", "1", "0", 0, 1,
                    "probability that a landmark in view is missed");
+  add_fixes(simulated);
+  add_fix_deviation(simulated, 0.0);
 }
 
 /// Makes a setting of [belief] default to that of [scenario] in a simulation. A setting with an
@@ -225,6 +243,7 @@ void add_belief(std::vector<Setting>& table) {
   belief.add_for_vehicles(control_noise_parameters());
   add_growth(belief);
   add_sensor_kind(belief, kTiny);
+  add_fix_deviation({"belief", table, {"simulated"}}, kTiny);
   for (Setting& setting : std::span(table).subspan(first)) follow_scenario(setting);
   add_prior(belief, table);
 }

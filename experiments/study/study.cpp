@@ -4,6 +4,7 @@
 #include "engine/errors.hpp"
 #include "experiments/external/external_filter.hpp"
 #include "experiments/files/files.hpp"
+#include "experiments/study/fixes.hpp"
 #include "experiments/study/known_map.hpp"
 #include "experiments/study/read_drives.hpp"
 #include "experiments/text/words.hpp"
@@ -111,6 +112,7 @@ bool is_silent(const std::string& section, const std::string& key, const std::st
                                                  {"scenario", "map_sigma_m", "0"},
                                                  {"scenario", "start_sigma_m", "0"},
                                                  {"scenario", "start_sigma_deg", "0"},
+                                                 {"scenario", "fixes", "none"},
                                                  {"belief", "map", "estimated"}};
   return std::ranges::any_of(silent, [&](const SilentSetting& one) {
     return one.section == section && one.key == key && one.value == value;
@@ -149,6 +151,7 @@ Study parse_study(const std::string& text, const std::string& name,
   }
   refuse_sensors(study.settings, study.cells);
   refuse_known_map(study.settings, study.cells, landmarks_of(study).size());
+  refuse_fixes(study.settings, study.cells);
   study.until = parse_stopping_rule(study.settings.text("study", "until"),
                                     study.settings.place("study", "until"));
   if (study.until) study.settings.replace("study", "until", text_of(*study.until));

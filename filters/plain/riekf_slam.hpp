@@ -50,6 +50,13 @@ class RiekfSlam final : public EkfSlam {
     return v;
   }
 
+  /// e_p = xi_p + J p xi_heading, so that H also has the turn about the origin.
+  Matrix<2, Eigen::Dynamic> derivative_of_position() const override {
+    Matrix<2, Eigen::Dynamic> H = EkfSlam::derivative_of_position();
+    H.col(2) = quarter_turned(mean_.head<2>());
+    return H;
+  }
+
   /// mean <- exp(xi) mean: p <- R(a) p + V xi_p with a = xi_heading (EQUATIONS (15.18)). V of
   /// EQUATIONS (15.4) is the rotation by a / 2 times the ratio of a chord to its arc.
   void move_mean(const Eigen::VectorXd& xi) override {

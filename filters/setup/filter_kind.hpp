@@ -29,6 +29,7 @@ struct FilterKind {
   /// association.
   bool delays_initialisation = false;
   bool takes_prior = false;  ///< true if it can be started from a Prior, with a known map
+  bool takes_fixes = false;  ///< true if it uses fixes of the position (take_fix())
   /// Removes from the capabilities those that the filter does not have with this setup; empty: it
   /// has all.
   std::function<void(const FilterSetup&, Capabilities&)> restrict_reports = {};
