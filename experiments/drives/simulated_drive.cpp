@@ -192,6 +192,24 @@ void SimulatedDrive::take_fixes(std::uint64_t run, Drive& drive) const {
 }
 
 void SimulatedDrive::drive_without_noise() {
+  scenario_.pilot == Pilot::constant ? hold_controls() : drive_along_waypoints();
+}
+
+void SimulatedDrive::take_step(const Pose& from, const Control& control) {
+  if (nominal_.size() == kMostSteps) throw_too_long(world_);
+  nominal_.push_back(control);
+  path_.push_back(move(from, control, 1.0 / scenario_.control_rate, scenario_.vehicle));
+}
+
+void SimulatedDrive::hold_controls() {
+  Control control{scenario_.speed};
+  control[controls_of(scenario_.vehicle).size() - 1] = scenario_.constant_turn;
+  const double steps = std::round(scenario_.drive_time * scenario_.control_rate);
+  for (double k = 0.0; k < steps; k += 1.0)
+    take_step(path_.empty() ? scenario_.start : path_.back(), control);
+}
+
+void SimulatedDrive::drive_along_waypoints() {
   WaypointPilot pilot(world_.waypoints, scenario_);
   const double step = step_length(scenario_);
   std::size_t target = pilot.next_waypoint();
@@ -203,10 +221,8 @@ void SimulatedDrive::drive_without_noise() {
       left = time_limit(pose, world_.waypoints[target], scenario_);
     }
     if ((left -= step) < 0.0) throw_unreachable(world_, target, scenario_);
-    if (nominal_.size() == kMostSteps) throw_too_long(world_);
-    nominal_.push_back(pilot.steer(pose));
-    pose = move(pose, nominal_.back(), 1.0 / scenario_.control_rate, scenario_.vehicle);
-    path_.push_back(pose);
+    take_step(pose, pilot.steer(pose));
+    pose = path_.back();
   }
 }
 
@@ -256,7 +272,7 @@ void SimulatedDrive::generate_measured(std::uint64_t run, Drive& drive) const {
 }
 
 void SimulatedDrive::generate_matched(std::uint64_t run, Landmarks landmarks, Drive& drive) const {
-  const bool is_open = scenario_.pilot == Pilot::open_loop;
+  const bool is_open = scenario_.pilot != Pilot::closed_loop;
   WaypointPilot pilot(world_.waypoints, scenario_);
   Pose pose = scenario_.start;
   for (std::size_t k = 0; k < itinerary_.steps(); ++k) {

@@ -37,12 +37,26 @@ double min_range_of(const Settings& s) {
                    s.text("scenario", "max_range") + ", so nothing is detected: lower it");
 }
 
+void take_pilot(const Settings& s, Scenario& scenario) {
+  const char* in = "scenario";
+  const std::string& pilot = s.text(in, "pilot");
+  if (pilot == "open_loop") scenario.pilot = Pilot::open_loop;
+  if (pilot != "constant") return;
+  scenario.pilot = Pilot::constant;
+  scenario.drive_time = s.number(in, "drive_time");
+  scenario.constant_turn = s.has(in, "constant_steer_deg") ? s.radians(in, "constant_steer_deg")
+                                                           : s.radians(in, "constant_yaw_rate_deg");
+  if (scenario.drive_time * s.number(in, "scan_rate") >= 1.0) return;
+  throw StudyError(s.place(in, "drive_time") + ": drive_time = " + s.text(in, "drive_time") +
+                   " s ends before the first scan: enlarge it, or scan_rate");
+}
+
 Scenario scenario_of(const Settings& s) {
   Scenario scenario;
   const char* in = "scenario";
   scenario.noise =
       s.text(in, "noise") == "matched" ? NoiseMode::matched : NoiseMode::measured_control;
-  if (s.has(in, "pilot") && s.text(in, "pilot") == "open_loop") scenario.pilot = Pilot::open_loop;
+  take_pilot(s, scenario);
   scenario.map = s.text(in, "map") == "random" ? MapPlacement::random : MapPlacement::fixed;
   scenario.map_shift = s.number(in, "map_shift");
   scenario.loops = static_cast<std::uint32_t>(s.count(in, "loops"));

@@ -127,12 +127,12 @@ void add_course(const SectionOfTable& scenario) {
       "and the filter is given noisy measurements of the controls. With matched the noise "
       "acts on the vehicle, and the filter is given the commanded controls, as filters assume "
       "(EQUATIONS 1).");
-  Setting& pilot = scenario.choice(
-      "pilot", {"closed_loop", "open_loop"},
-      "whether the pilot sees the true pose. In closed_loop it steers by the true pose. In "
-      "open_loop it applies the controls of the noise-free drive, so that the vehicle "
-      "strays from the way-points.");
-  scenario.only_if(pilot, "noise", {"matched"});
+  scenario.choice(
+      "pilot", {"closed_loop", "open_loop", "constant"},
+      "how the vehicle is controlled. In closed_loop the pilot steers by the true pose. In "
+      "open_loop, only with noise = matched, it applies the controls of the noise-free drive, so "
+      "that the vehicle strays from the way-points. With constant the controls are held for "
+      "drive_time, in a circle or straight on, and way-points and loops have no effect.");
   scenario.choice(
       "map", {"fixed", "random"},
       "whether landmarks are displaced in every run. With fixed they are where the world has them. "
@@ -140,6 +140,21 @@ void add_course(const SectionOfTable& scenario) {
   scenario.number("map_shift", "m", "10", 0, 1e4,
                   "largest displacement of a landmark of a random map");
   add_map_deviation(scenario);
+}
+
+/// Adds the controls that are held if pilot = constant.
+void add_constant_controls(const SectionOfTable& scenario) {
+  const std::vector<std::string> constant{"constant"};
+  scenario.only_if(scenario.number("drive_time", "s", "60", 1e-3, 1e7, "duration of the drive"),
+                   "pilot", constant);
+  Setting& steer = scenario.number("constant_steer_deg", "deg", "0", -89, 89,
+                                   "steering angle that is held; positive to the left");
+  scenario.only_if(steer, "pilot", constant);
+  scenario.only_if(steer, "vehicle", {"front_axle", "rear_wheel"});
+  Setting& yaw_rate = scenario.number("constant_yaw_rate_deg", "deg/s", "0", -5700, 5700,
+                                      "yaw rate that is held; positive to the left");
+  scenario.only_if(yaw_rate, "pilot", constant);
+  scenario.only_if(yaw_rate, "vehicle", {"differential_drive", "omnidirectional"});
 }
 
 void add_drive(const SectionOfTable& scenario) {
@@ -155,6 +170,7 @@ void add_drive(const SectionOfTable& scenario) {
   scenario.number("waypoint_radius", "m", "1", 1e-3, 1e4,
                   "distance at which a way-point counts as reached");
   scenario.add_for_vehicles(vehicle_parameters(VehicleUse::pilot));
+  add_constant_controls(scenario);
   scenario.number("start_x", "m", "0", -1e6, 1e6, "x before the first step");
   scenario.number("start_y", "m", "0", -1e6, 1e6, "y before the first step");
   scenario.number("start_heading_deg", "deg", "0", -360, 360, "heading before the first step");
