@@ -53,6 +53,7 @@ class JointBound {
   double mean_map_variance() const;
 
  private:
+  void add_increment_noise(const Pose& pose, const Control& control, double duration);
   void finish_motion();
   [[nodiscard]] bool correct(const Pose& pose, std::span<const SeenLandmark> landmarks);
   [[nodiscard]] bool subtract(Eigen::MatrixXd gain, const Eigen::MatrixXd& S);

@@ -7,6 +7,7 @@
 #include "filters/models/ackermann.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace montecarta::experiments {
 namespace {
@@ -278,8 +279,7 @@ void SimulatedDrive::generate_matched(std::uint64_t run, Landmarks landmarks, Dr
   for (std::size_t k = 0; k < itinerary_.steps(); ++k) {
     pilot.look_ahead(pose);
     drive.controls[k] = is_open ? nominal_[k] : pilot.steer(pose);
-    pose = move(pose, noisy(drive.controls[k], run, k), 1.0 / scenario_.control_rate,
-                scenario_.vehicle);
+    pose = moved_by(pose, noisy_step(drive.controls[k], run, k));
     drive.truth[k] = pose;
     if ((k + 1) % scenario_.steps_per_scan == 0) scan(place(run, k), pose, landmarks, drive);
   }
@@ -303,6 +303,19 @@ void SimulatedDrive::end_scan(const StreamIdentity& here, Drive& drive) const {
 std::size_t SimulatedDrive::expected_detections() const {
   const double clutter = scenario_.clutter_rate * static_cast<double>(itinerary_.scans());
   return 2 * (visible_.size() + static_cast<std::size_t>(clutter)) + 1000;
+}
+
+BodyStep<double> SimulatedDrive::noisy_step(const Control& control, std::uint64_t run,
+                                            std::size_t step) const {
+  const double duration = 1.0 / scenario_.control_rate;
+  const BodyStep<double> moved = body_step(scenario_.vehicle, noisy(control, run, step), duration);
+  const IncrementNoise& noise = scenario_.control.increment;
+  if (noise.is_none()) return moved;
+  RngStream draw(with(place(run, step), Draw::world_increment, 0));
+  std::array<double, 3> e{};
+  for (double& one : e) one = draw.normal();
+  const BodyStep<double> given = body_step(scenario_.vehicle, control, duration);
+  return perturbed(moved, noise.model, increment_deviations(noise, given, duration), e);
 }
 
 Control SimulatedDrive::noisy(const Control& control, std::uint64_t run, std::size_t step) const {

@@ -187,6 +187,8 @@ class SimulatedDrive final : public DriveSource {
   void end_scan(const StreamIdentity& here, Drive& drive) const;
   void take_fixes(std::uint64_t run, Drive& drive) const;
   std::size_t expected_detections() const;
+  /// Returns the step of a vehicle that is given `control`, with the noise of this run and step.
+  BodyStep<double> noisy_step(const Control& control, std::uint64_t run, std::size_t step) const;
   /// Returns `control` with the noise of this run and step.
   Control noisy(const Control& control, std::uint64_t run, std::size_t step) const;
   StreamIdentity place(std::uint64_t run, std::size_t step) const;

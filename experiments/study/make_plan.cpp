@@ -27,6 +27,8 @@ Belief belief_of(const Settings& s, const CellSpec& spec) {
   ControlNoise control = control_noise_of(s, in);
   for (double& sigma : control.sigma) sigma *= motion;
   for (double& alpha : control.alpha) alpha *= motion * motion;
+  for (double& sigma : control.increment.sigma) sigma *= motion;
+  for (double& alpha : control.increment.alpha) alpha *= motion * motion;
   Belief belief{.vehicle = vehicle_of(s, in), .control = control};
   take_sensor(s, in, sensor, belief);
   if (const auto sigma = believed_sigma_fix(s)) belief.sigma_fix = sensor * *sigma;

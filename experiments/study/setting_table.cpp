@@ -85,6 +85,36 @@ void add_growth(const SectionOfTable& section) {
     section.number(alpha_key(i).c_str(), "SI", "0", 0, 1e6, kMeanings[i]);
 }
 
+/// Adds the noise of a step besides that of its controls (EQUATIONS 1).
+void add_increment_noise(const SectionOfTable& section, bool needs_matched) {
+  Setting& model = section.choice(
+      "increment_noise", {kIncrementNames.begin(), kIncrementNames.end()},
+      "noise of a step besides that of its controls. With additive the displacement forward and to "
+      "the left and the turn have independent noise. With odometry the rotation, translation and "
+      "rotation of a step have (Thrun, Burgard, Fox: Probabilistic Robotics, table 5.6).");
+  if (needs_matched) section.only_if(model, "noise", {"matched"});
+  static constexpr std::array<const char*, 3> kOf = {"displacement forward",
+                                                     "displacement to the "
+                                                     "left",
+                                                     "turn"};
+  for (std::size_t i = 0; i < kIncrementKeys.size(); ++i) {
+    const std::string meaning = std::string("standard deviation of the ") + kOf[i] +
+                                " after one second. Equation (1.11) of EQUATIONS.";
+    const char* const unit = i < 2 ? "m/s^0.5" : "deg/s^0.5";
+    section.only_if(section.number(kIncrementKeys[i], unit, "0", 0, 1e6, meaning.c_str()),
+                    "increment_noise", {"additive"});
+  }
+  static constexpr std::array<const char*, 4> kMeanings = {
+      "variance of a rotation per its own square. Equation (1.12) of EQUATIONS.",
+      "variance of a rotation per squared translation. Equation (1.12) of EQUATIONS.",
+      "variance of the translation per its own square. Equation (1.12) of EQUATIONS.",
+      "variance of the translation per squared rotations. Equation (1.12) of EQUATIONS."};
+  for (std::size_t i = 0; i < kMeanings.size(); ++i) {
+    section.only_if(section.number(odometry_key(i).c_str(), "SI", "0", 0, 1e6, kMeanings[i]),
+                    "increment_noise", {"odometry"});
+  }
+}
+
 /// Adds the kind of sensor, its mounting and its noise. Deviations are bounded below by `least`.
 void add_sensor_kind(const SectionOfTable& section, double least) {
   section.choice("sensor", sensor_names(),
@@ -177,6 +207,7 @@ void add_drive(const SectionOfTable& scenario) {
   add_start_deviations(scenario);
   scenario.add_for_vehicles(control_noise_parameters());
   add_growth(scenario);
+  add_increment_noise(scenario, true);
   add_sensor_kind(scenario, 0.0);
 }
 
@@ -258,6 +289,7 @@ void add_belief(std::vector<Setting>& table) {
   belief.add_for_vehicles(vehicle_parameters(VehicleUse::motion));
   belief.add_for_vehicles(control_noise_parameters());
   add_growth(belief);
+  add_increment_noise(belief, false);
   add_sensor_kind(belief, kTiny);
   add_fix_deviation({"belief", table, {"simulated"}}, kTiny);
   for (Setting& setting : std::span(table).subspan(first)) follow_scenario(setting);

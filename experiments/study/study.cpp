@@ -125,6 +125,8 @@ bool is_silent(const Settings& settings, const std::string& section, const std::
       {"scenario", "start_sigma_m", "0"},
       {"scenario", "start_sigma_deg", "0"},
       {"scenario", "pilot", "closed_loop", {{"scenario", "noise", "measured-control"}}},
+      {"scenario", "increment_noise", "none"},
+      {"belief", "increment_noise", "none", {{"scenario", "increment_noise", "none"}}},
       {"scenario", "fixes", "none"},
       {"belief", "map", "estimated"}};
   return std::ranges::any_of(silent, [&](const SilentSetting& one) {

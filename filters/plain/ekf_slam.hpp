@@ -44,7 +44,8 @@ class EkfSlam : public SlamFilter {
     const auto step = linearised_move(pose(), u, duration, setup_.belief.vehicle);
     const ControlJacobian Fu = control_jacobian(step.jacobians);
     move_pose(step.pose, pose_jacobian(step.jacobians),
-              Fu * control_noise(setup_.belief, u) * Fu.transpose());
+              Fu * control_noise(setup_.belief, u) * Fu.transpose() +
+                  increment_covariance(setup_.belief, mean_(2), u, duration));
   }
 
   void take_fix(const PositionFix& fix) override { fix_ = fix; }

@@ -10,6 +10,7 @@
 #include "filters/models/range_bearing.hpp"
 #include "filters/setup/filter_setup.hpp"
 
+#include <array>
 #include <cmath>
 #include <concepts>
 #include <functional>
@@ -112,6 +113,20 @@ inline void look_around(const SmallWorldSettings& settings, std::uint32_t step, 
   world.drive.scan_begin.push_back(static_cast<std::uint32_t>(world.drive.detections.size()));
 }
 
+/// The step of a vehicle that is driven by `driven` instead of `control`, with the noise of a step.
+inline BodyStep<double> noisy_step(const SmallWorldSettings& settings, std::uint32_t step,
+                                   const Control& control, const Control& driven) {
+  const Vehicle& vehicle = settings.noise.vehicle;
+  const BodyStep<double> moved = body_step(vehicle, driven, 0.025);
+  const IncrementNoise& noise = settings.noise.control.increment;
+  if (noise.is_none()) return moved;
+  RngStream draw({settings.seed, 0, step, 0, Draw::world_increment});
+  std::array<double, 3> e{};
+  for (double& one : e) one = draw.normal();
+  return perturbed(moved, noise.model,
+                   increment_deviations(noise, body_step(vehicle, control, 0.025), 0.025), e);
+}
+
 inline SmallWorld small_world(const SmallWorldSettings& settings) {
   SmallWorld world{.itinerary = {}, .drive = {}, .seed = settings.seed};
   place_landmarks(settings, world);
@@ -127,7 +142,7 @@ inline SmallWorld small_world(const SmallWorldSettings& settings) {
     for (std::size_t i = 0; i < n_controls; ++i) {
       driven[i] += settings.noise.control.sigma[i] * draw.normal();
     }
-    truth = move(truth, driven, 0.025, settings.noise.vehicle);
+    truth = moved_by(truth, noisy_step(settings, step, control, driven));
     world.itinerary.step_time.push_back(0.025 * (step + 1));
     world.drive.controls.push_back(control);
     world.drive.truth.push_back(truth);

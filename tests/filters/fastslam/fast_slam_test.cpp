@@ -3,6 +3,7 @@
 #include "filters/fastslam/motion_sampling.hpp"
 #include "filters/fastslam/sigma_filters.hpp"
 #include "tests/filters/fastslam/filter_comparison.hpp"
+#include "tests/filters/some_models.hpp"
 
 namespace montecarta::filters {
 namespace {
@@ -45,6 +46,16 @@ TEST_P(FastSlams, EqualsThePlainFilterWithFixes) {
   SmallWorld world = with_fixes(small_world(settings), settings.noise, 2);
   leave_alone(3, world.drive);
   expect_same_run(*lanes, *plain, world, 1e-8);
+}
+
+TEST_P(FastSlams, EqualsThePlainFilterWithNoiseOfTheStep) {
+  for (const IncrementNoise& increment : some_increments()) {
+    SmallWorldSettings settings{.scans = 20};
+    settings.noise.control.increment = increment;
+    const auto lanes = make_production(GetParam(), settings);
+    const auto plain = make_plain(GetParam(), settings);
+    expect_same_run(*lanes, *plain, small_world(settings), 1e-8);
+  }
 }
 
 TEST_P(FastSlams, EstimatesBetweenScansAsThePlainFilterDoes) {

@@ -46,7 +46,8 @@ class KalmanFilter {
     for (Eigen::Index i = 0; i < 2; ++i) {
       const auto component = static_cast<std::size_t>(i);
       mean(i) += kStraight[component] * kStep;
-      covariance(i, i) += std::pow(belief.control.sigma[component] * kStep, 2);
+      covariance(i, i) += std::pow(belief.control.sigma[component] * kStep, 2) +
+                          std::pow(belief.control.increment.sigma[component], 2) * kStep;
     }
   }
   void fix(const PositionFix& fix, double sigma) {
@@ -128,6 +129,15 @@ TEST_P(OnALinearModel, LocalisationEqualsKalman) {
         kind.make(in_known_map(setup_for(kind, settings, {{"iterations", iterations}})));
     expect_kalman(*filter, KalmanFilter(*world.drive.prior), world, settings.noise);
   }
+}
+
+TEST_P(OnALinearModel, NoiseOfTheStepEqualsKalman) {
+  const auto& [kind, iterations] = GetParam();
+  Belief belief = linear_belief();
+  belief.control.increment = {.model = IncrementModel::additive, .sigma = {0.1, 0.2, 0.0}};
+  const SmallWorldSettings settings{.scans = 30, .noise = belief, .controls = {kStraight}};
+  const auto filter = make_filter(kind, settings, {{"iterations", iterations}});
+  expect_kalman(*filter, KalmanFilter(), small_world(settings), belief);
 }
 
 TEST_P(OnALinearModel, FixesEqualKalman) {

@@ -146,6 +146,14 @@ TEST_P(PlainJointFilter, EqualsTheFastFilterOfEveryVehicle) {
   }
 }
 
+TEST_P(PlainJointFilter, EqualsTheFastFilterWithNoiseOfTheStep) {
+  for (const IncrementNoise& increment : some_increments()) {
+    Belief noise = rough();
+    noise.control.increment = increment;
+    compared({.seed = 11, .scans = 100, .noise = noise});
+  }
+}
+
 /// Without noise a control of zero is no motion: the points of linearisation stay.
 TEST_P(PlainJointFilter, EqualsTheFastFilterOfAVehicleThatStopsAndGoes) {
   Belief noise = rough();
