@@ -188,9 +188,17 @@ void refuse_equal_labels(const std::vector<CellSpec>& cells) {
   }
 }
 
-std::string filters_for(const std::string& sensor) {
+/// Returns whether the filter takes its sensors mounted elsewhere than at the pose.
+bool takes_mountings(const FilterKind& kind) {
+  return kind.sensors.empty() || kind.takes_mountings;
+}
+
+enum class Mounted { anywhere, elsewhere };
+
+std::string filters_for(const std::string& sensor, Mounted mounted = Mounted::anywhere) {
   std::vector<std::string> names;
   for (const FilterKind& kind : known_filters()) {
+    if (mounted == Mounted::elsewhere && !takes_mountings(kind)) continue;
     if (kind.sensors.empty() || std::ranges::find(kind.sensors, sensor) != kind.sensors.end())
       names.push_back(kind.name);
   }
@@ -207,11 +215,11 @@ void refuse_kind(const Settings& settings, const CellSpec& cell) {
 }
 
 void refuse_mounting(const CellSpec& cell, const Sensor& sensor) {
-  if (cell.filter->sensors.empty() || sensor.mounting.is_none()) return;
+  if (takes_mountings(*cell.filter) || sensor.mounting.is_none()) return;
   throw StudyError(cell.place + ": " + cell.filter->name +
                    " takes no sensor that is mounted elsewhere than at the pose (mount_forward, "
                    "mount_left, mount_turn_deg): set these to 0, or use one of " +
-                   filters_for(name_of(sensor)));
+                   filters_for(name_of(sensor), Mounted::elsewhere));
 }
 
 void refuse_association(const Settings& settings, const CellSpec& cell, const Sensor& sensor) {

@@ -25,6 +25,7 @@ struct FilterKind {
   std::vector<Parameter> options;  ///< options in the order of the documentation
   /// Sensors that it supports, mounted at the pose; empty means all sensors, mounted anywhere.
   std::vector<std::string> sensors = {RangeBearingSensor::kName};
+  bool takes_mountings = false;  ///< true if its listed sensors may be mounted anywhere, too
   /// True if it initialises landmarks that one detection does not fix. It then needs known
   /// association.
   bool delays_initialisation = false;
