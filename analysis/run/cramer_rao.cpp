@@ -2,6 +2,7 @@
 #include "analysis/run/cramer_rao.hpp"
 
 #include "analysis/run/joint_bound.hpp"
+#include "analysis/run/run_reader.hpp"
 #include "analysis/run/simulated_world.hpp"
 #include "engine/core/drive.hpp"
 #include "filters/models/ackermann.hpp"
@@ -137,6 +138,11 @@ CramerRaoBound squared_bound(const SimulatedWorld& world, const TruePath& path) 
   for (const std::uint32_t scan_row : path.scan_rows) {
     for (; row <= scan_row; ++row) move_along(path, row, world.vehicle, joint);
     const Pose& pose = path.rows[scan_row];
+    const std::size_t scan = bound.position.size() + 1;
+    const bool has_fix = world.scans_per_fix > 0 && scan % world.scans_per_fix == 0;
+    if (has_fix && !joint.fix(world.sigma_fix * world.sigma_fix)) {
+      return none_for("the noise of the fixes is too small to compute with");
+    }
     if (world.detected > 0.0 && !joint.scan(pose, seen_from(pose, world, path.landmarks))) {
       return none_for("the noise is too small to compute with");
     }
@@ -149,7 +155,9 @@ CramerRaoBound squared_bound(const SimulatedWorld& world, const TruePath& path) 
   return bound;
 }
 
-BoundOfStudy::BoundOfStudy(const ResultFile& file) : world_(simulated_world_of(file)) {
+BoundOfStudy::BoundOfStudy(const ResultFile& file)
+    : world_(simulated_world_of(file)),
+      first_judged_(static_cast<std::ptrdiff_t>(judged_scans_of(file).first)) {
   if (!world_) {
     missing_ = "the file does not describe a simulated vehicle and its sensor";
   } else if (!(world_->sigma_observation.minCoeff() > 0.0)) {
@@ -168,6 +176,9 @@ CramerRaoBound BoundOfStudy::result() const {
   if (!missing_.empty()) return none_for(missing_);
   CramerRaoBound bound = root_mean(squares_);
   bound.is_bound = world_->same_path;
+  for (auto* const series : {&bound.position, &bound.heading}) {
+    if (!series->empty()) series->erase(series->begin(), series->begin() + first_judged_);
+  }
   return bound;
 }
 

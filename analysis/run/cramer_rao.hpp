@@ -24,8 +24,8 @@ inline constexpr std::size_t kBoundRuns = 16;
 /// (is_bound is false), the numbers are no bound but the covariance that a linearised filter with
 /// Jacobians at the truth reports (STATISTICS 11).
 struct CramerRaoBound {
-  std::vector<double> position;  ///< [m] {scan} least RMS error of the position
-  std::vector<double> heading;   ///< [rad] {scan} least RMS error of the heading
+  std::vector<double> position;  ///< [m] {judged scan} least RMS error of the position
+  std::vector<double> heading;   ///< [rad] {judged scan} least RMS error of the heading
   /// [m] at the end, RMS over the landmarks that came into view; NaN if none did.
   double map = kNaN;
   std::size_t runs = 0;  ///< number of averaged paths; 1 if all runs share one path
@@ -66,6 +66,7 @@ class BoundOfStudy {
 
  private:
   std::optional<SimulatedWorld> world_;
+  std::ptrdiff_t first_judged_;  ///< number of the first scan that is judged
   std::vector<TruePath> paths_;
   std::vector<CramerRaoBound> squares_;  ///< {path} squared bounds
   std::string missing_;                  ///< reason why there is no path

@@ -72,14 +72,15 @@ DriveCriteria criteria_of_drive(const RunDrive& drive) {
 }  // namespace
 
 RunCriteria criteria_of(const ResultFile& file, double level, double within) {
-  RunCriteria criteria{.times = file.scan_times(),
+  const std::size_t first = judged_scans_of(file).first;
+  RunCriteria criteria{.times = std::span(file.scan_times()).subspan(first),
                        .level = level,
                        .within = within,
                        .references = {},
                        .beacons = {},
                        .map = map_criteria_of(file),
-                       .joint_scans = file.description().joint_scans,
-                       .scan_rows = file.scan_rows(),
+                       .joint_scans = judged_joint_scans(file),
+                       .scan_rows = std::span(file.scan_rows()).subspan(first),
                        .frame = error_frame_of(file),
                        .calibrates = noise_is_matched(file),
                        .runs_at_analyses = study_facts_of(file).runs_at_analyses,

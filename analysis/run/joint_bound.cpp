@@ -6,6 +6,8 @@
 
 #include <Eigen/Cholesky>
 
+#include <utility>
+
 namespace montecarta::analysis {
 namespace {
 
@@ -49,10 +51,22 @@ Pose JointBound::move(const Pose& pose, const Control& control, double duration)
   for (Eigen::Index i = 0; i < noise.cols(); ++i)
     noise.col(i) *= sigma[static_cast<std::size_t>(i)];
   pose_ = F * pose_ * F.transpose() + noise * noise.transpose();
+  add_increment_noise(pose, control, duration);
   mirror_lower(pose_);
   pending_x_heading_ += step.jacobians.x_heading;
   pending_y_heading_ += step.jacobians.y_heading;
   return step.pose;
+}
+
+/// Adds the noise of a step besides that of its controls (EQUATIONS (1.11), (1.12)).
+void JointBound::add_increment_noise(const Pose& pose, const Control& control, double duration) {
+  if (control_noise_.increment.is_none()) return;
+  const auto step = body_step(vehicle_, control, duration);
+  for (const auto& column : increment_columns(control_noise_.increment, step, duration)) {
+    const Point way = in_world(direction_of(pose.heading), column.forward, column.left);
+    const Eigen::Vector3d in_map(way.x, way.y, column.turn);
+    pose_ += in_map * in_map.transpose();
+  }
 }
 
 void JointBound::finish_motion() {
@@ -113,6 +127,17 @@ bool JointBound::correct(const Pose& pose, std::span<const SeenLandmark> landmar
         observations[k].by_landmark * gain.middleRows<2>(row_of(landmarks[k].identity));
     S.diagonal().segment<2>(i) += observation_variance_;
   }
+  return subtract(std::move(gain), S);
+}
+
+bool JointBound::fix(double variance) {
+  finish_motion();
+  const Eigen::MatrixXd S = pose_.topLeftCorner<2, 2>() + variance * Eigen::Matrix2d::Identity();
+  return subtract(joint_.block(0, 0, size_, 2), S) && pose_.allFinite();
+}
+
+/// P <- P - W W' with W = `gain` L^-T and S = L L'.
+bool JointBound::subtract(Eigen::MatrixXd gain, const Eigen::MatrixXd& S) {
   const Eigen::LLT<Eigen::MatrixXd> factor(S);
   if (factor.info() != Eigen::Success) return false;
   factor.matrixU().solveInPlace<Eigen::OnTheRight>(gain);

@@ -43,14 +43,20 @@ class JointBound {
   /// the noise is too small for the computation; the bound is unusable then.
   [[nodiscard]] bool scan(const Pose& pose, std::span<const SeenLandmark> landmarks);
 
+  /// Updates the bound with a fix of the position of this variance [m^2]. Returns false as scan()
+  /// does.
+  [[nodiscard]] bool fix(double variance);
+
   const Eigen::Matrix3d& pose() const { return pose_; }
   /// [m^2] Mean squared position error of the landmarks that the detections locate; NaN if there
   /// are none.
   double mean_map_variance() const;
 
  private:
+  void add_increment_noise(const Pose& pose, const Control& control, double duration);
   void finish_motion();
   [[nodiscard]] bool correct(const Pose& pose, std::span<const SeenLandmark> landmarks);
+  [[nodiscard]] bool subtract(Eigen::MatrixXd gain, const Eigen::MatrixXd& S);
   void append(const Pose& pose, const SeenLandmark& landmark);
   void append_unknown(const SeenLandmark& landmark);
   Eigen::VectorXd column(Eigen::Index j) const;

@@ -10,6 +10,13 @@
 namespace montecarta::analysis {
 namespace {
 
+/// The true poses at all scans, judged or not.
+std::vector<double> whole_path(const RunRows& rows) {
+  std::vector<double> path = rows.earlier_truth;
+  path.insert(path.end(), rows.truth.begin(), rows.truth.end());
+  return path;
+}
+
 RunPits measured_pits(const MeasuredRun& run, const RunCriteria& criteria, std::size_t particles) {
   RunPits pits;
   if (criteria.calibrates) {
@@ -42,7 +49,7 @@ void MeasuredRun::measure(const RunCriteria& criteria, std::size_t particles) {
   }
   map.reset();
   if (criteria.map.known && rows.final_map) {
-    map = map_scores(*rows.final_map, criteria.map, rows.landmarks, rows.truth);
+    map = map_scores(*rows.final_map, criteria.map, rows.landmarks, whole_path(rows));
   }
   has_identities = criteria.map.identities_known;
   joint.clear();

@@ -26,13 +26,13 @@ struct DriveCriteria {
 
 /// Criteria for runs, common to all cells of a file. The file must outlive them.
 struct RunCriteria {
-  std::span<const double> times;               ///< [s] {scan} time of each scan
-  double level = kUsualLevel;                  ///< level of NEES bounds and tests
-  double within = kUsualMargin;                ///< margin of the verdict (judge())
-  std::vector<PathAtFixes> references;         ///< {reference} its fixes on the path of the rows
-  std::vector<Eigen::Vector2d> beacons;        ///< [m] positions of surveyed beacons
-  MapCriteria map;                             ///< criteria for the maps of a simulation
-  std::span<const std::uint32_t> joint_scans;  ///< scans at which joint estimates are stored
+  std::span<const double> times;           ///< [s] {judged scan} time of each scan
+  double level = kUsualLevel;              ///< level of NEES bounds and tests
+  double within = kUsualMargin;            ///< margin of the verdict (judge())
+  std::vector<PathAtFixes> references;     ///< {reference} its fixes on the path of the rows
+  std::vector<Eigen::Vector2d> beacons;    ///< [m] positions of surveyed beacons
+  MapCriteria map;                         ///< criteria for the maps of a simulation
+  std::vector<std::uint32_t> joint_scans;  ///< judged scans at which joint estimates are stored
   /// {scan} row of each scan; empty if rows are scans.
   std::span<const std::uint32_t> scan_rows = {};
   ErrorFrame frame = ErrorFrame::of_truth;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/run/run_reader.hpp"
 
+#include "analysis/run/study_facts.hpp"
 #include "engine/errors.hpp"
+#include "engine/text/number_text.hpp"
 
 #include <algorithm>
 
@@ -11,10 +13,51 @@ namespace {
 constexpr std::string_view kFinalMapSeen = "final_map_seen";
 constexpr double kRoundingOfCounts = 1e-6;  // [landmarks] rounding error that a map size may have
 
+/// Number of scans with joint estimates before scan number `first`.
+std::size_t joint_scans_before(const ResultFile& file, std::size_t first) {
+  const std::vector<std::uint32_t>& all = file.description().joint_scans;
+  return static_cast<std::size_t>(std::ranges::lower_bound(all, first) - all.begin());
+}
+
+/// The first scan that is read.
+std::size_t first_scan_of(const ResultFile& file, Reach reach) {
+  return reach == Reach::full_run ? 0 : judged_scans_of(file).first;
+}
+
 }  // namespace
 
+JudgedScans judged_scans_of(const ResultFile& file) {
+  JudgedScans judged{study_facts_of(file).judge_from};
+  if (judged.from == 0.0) return judged;
+  const std::vector<double>& times = file.scan_times();
+  judged.first =
+      static_cast<std::size_t>(std::ranges::lower_bound(times, judged.from) - times.begin());
+  const std::string problem =
+      file.path().string() + ": study.judge_from = " + compact(judged.from) + " s ";
+  if (!file.description().drives.empty()) {
+    throw StudyError(problem + "of drives that have times of their own: choose another file");
+  }
+  if (judged.first == times.size()) {
+    throw StudyError(problem + "is behind the last scan (nothing is judged): choose another file");
+  }
+  return judged;
+}
+
+std::vector<std::uint32_t> judged_joint_scans(const ResultFile& file) {
+  const auto first = static_cast<std::uint32_t>(judged_scans_of(file).first);
+  std::vector<std::uint32_t> judged = file.description().joint_scans;
+  std::erase_if(judged, [first](std::uint32_t scan) { return scan < first; });
+  for (std::uint32_t& scan : judged) scan -= first;
+  return judged;
+}
+
 RunReader::RunReader(const ResultFile& file, const StoredCell& cell, Reach reach)
-    : file_(&file), cell_(&cell), reach_(reach), cpu_seconds_(file.cpu_seconds(cell)) {}
+    : file_(&file),
+      cell_(&cell),
+      reach_(reach),
+      first_(first_scan_of(file, reach)),
+      first_joint_(joint_scans_before(file, first_)),
+      cpu_seconds_(file.cpu_seconds(cell)) {}
 
 bool RunReader::has(std::string_view column, std::size_t i) const {
   return cell_->has(column) || (reach_ == Reach::full_run && file_->holds(*cell_, column, i));
@@ -25,7 +68,7 @@ std::size_t RunReader::scans_of(std::size_t i) const {
 }
 
 void RunReader::keep_scans(std::size_t width, std::size_t i, std::vector<double>& rows) const {
-  const auto scan_rows = drive_of_run(*file_, file_->runs()[i]).scan_rows;
+  const auto scan_rows = drive_of_run(*file_, file_->runs()[i]).scan_rows.subspan(first_);
   for (std::size_t s = 0; s < scan_rows.size(); ++s) {
     if (scan_rows[s] == s) continue;
     std::copy_n(rows.begin() + static_cast<std::ptrdiff_t>(scan_rows[s] * width), width,
@@ -34,11 +77,16 @@ void RunReader::keep_scans(std::size_t width, std::size_t i, std::vector<double>
   rows.resize(scan_rows.size() * width);
 }
 
-void RunReader::read_truth(std::size_t i, std::vector<double>& out) const {
-  if (!file_->has_truth()) return out.clear();
-  out.resize(file_->times().size() * 3);
-  file_->read_truth(i, out);
-  keep_scans(3, i, out);
+void RunReader::read_truth(std::size_t i, RunRows& rows) const {
+  rows.earlier_truth.clear();
+  if (!file_->has_truth()) return rows.truth.clear();
+  rows.truth.resize(file_->times().size() * 3);
+  file_->read_truth(i, rows.truth);
+  for (const std::uint32_t row : std::span(file_->description().scan_rows).first(first_)) {
+    const auto pose = rows.truth.begin() + std::ptrdiff_t{3} * row;
+    rows.earlier_truth.insert(rows.earlier_truth.end(), pose, pose + 3);
+  }
+  keep_scans(3, i, rows.truth);
 }
 
 void RunReader::read_at_scans(std::string_view column, std::size_t width, std::size_t i,
@@ -101,6 +149,30 @@ void RunReader::read_whole(std::string_view column, std::size_t i, std::vector<d
   file_->read(*cell_, column, i, std::span(out));
 }
 
+void RunReader::read_without(std::string_view column, std::size_t left_out, std::size_t width,
+                             std::size_t i, std::vector<double>& out) const {
+  read_whole(column, i, out);
+  if (out.empty()) return;
+  out.erase(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(left_out * width));
+}
+
+void RunReader::read_joint(std::size_t i, JointRows& out) const {
+  const Column* mean = cell_->find("joint_mean");
+  const std::size_t states = mean == nullptr ? 0 : mean->shape.back();
+  read_without("joint_mean", first_joint_, states, i, out.mean);
+  read_without("joint_covariance", first_joint_, states * states, i, out.covariance);
+}
+
+void RunReader::read_errors(std::size_t i, ErrorRows& out) const {
+  const Column* error = cell_->find("error");
+  const std::size_t components = error == nullptr ? 0 : error->shape.back();
+  read_without("error", first_, components, i, out.value);
+  read_without("error_covariance", first_, components * components, i, out.covariance);
+  for (std::size_t k = 0; k < kErrorConventions.size(); ++k) {
+    read_without(kErrorConventions[k].column, first_, 1, i, out.nees_by[k]);
+  }
+}
+
 template <class Number>
 void RunReader::read_scans(std::string_view column, std::size_t width, std::size_t i,
                            std::vector<Number>& out) const {
@@ -114,6 +186,7 @@ void RunReader::read_scans(std::string_view column, std::size_t width, std::size
   out.resize(file_->scan_times().size() * width);
   file_->read(*cell_, column, i, std::span(out));
   out.resize(scans_of(i) * width);
+  out.erase(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(first_ * width));
 }
 
 void RunReader::expect_particles(const RunRows& rows) const {
@@ -141,7 +214,7 @@ void RunReader::read_particles(std::size_t i, RunRows& rows) const {
 
 void RunReader::read(std::size_t i, RunRows& rows) const {
   file_->expect_whole(*cell_, i);
-  read_truth(i, rows.truth);
+  read_truth(i, rows);
   read_at_scans("pose_mean", 3, i, rows.spread.mean);
   read_at_scans("pose_covariance", 9, i, rows.spread.covariance);
   read_at_scans("pose_mean_mixture", 3, i, rows.mixture.mean);
@@ -158,13 +231,8 @@ void RunReader::read(std::size_t i, RunRows& rows) const {
   read_scans("map_size", 1, i, rows.map_size);
   read_scans("rotation_information", 1, i, rows.rotation_information);
   read_final_map(i, rows);
-  read_whole("joint_mean", i, rows.joint.mean);
-  read_whole("joint_covariance", i, rows.joint.covariance);
-  read_whole("error", i, rows.error.value);
-  read_whole("error_covariance", i, rows.error.covariance);
-  for (std::size_t k = 0; k < kErrorConventions.size(); ++k) {
-    read_whole(kErrorConventions[k].column, i, rows.error.nees_by[k]);
-  }
+  read_joint(i, rows.joint);
+  read_errors(i, rows.error);
   rows.run = file_->runs()[i];
   rows.landmarks = file_->landmarks_of(i);
   rows.cpu_seconds = cpu_seconds_[i];

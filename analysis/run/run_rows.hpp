@@ -95,7 +95,10 @@ struct ErrorRows {
 /// empty.
 struct RunRows {
   std::vector<double> truth;  ///< {scan, 3} [m, m, rad]; empty if unknown
-  MomentRows spread;          ///< mean always stored, except in files of states that are no poses
+  /// {scan before the first one that is judged, 3} [m, m, rad] truth, which says what came into
+  /// view; empty if all scans are judged.
+  std::vector<double> earlier_truth;
+  MomentRows spread;  ///< mean always stored, except in files of states that are no poses
   MomentRows mixture;
   std::vector<double> ess;               ///< {scan} effective sample size
   std::vector<std::uint32_t> resampled;  ///< {scan} 1 if the filter resampled at the scan, else 0

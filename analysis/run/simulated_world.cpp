@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <string>
 
 namespace montecarta::analysis {
@@ -103,6 +104,12 @@ std::optional<SimulatedWorld> simulated_world_of(const ResultFile& file) {
       .same_path = facts.text("noise") != "matched",
       .sensor = *sensor};
   if (map_is_known(file)) world.prior = prior_of(facts);
+  if (facts.optional_text("fixes") == "position") {
+    const double scans = std::round(facts.number("scan_rate") / facts.number("fix_rate"));
+    if (!(scans >= 1.0) || scans > 1e9) return std::nullopt;
+    world.scans_per_fix = static_cast<std::size_t>(scans);
+    world.sigma_fix = facts.si("sigma_fix");
+  }
   if (!facts.complete()) return std::nullopt;
   return world;
 }

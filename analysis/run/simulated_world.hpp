@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 
+#include <cstddef>
 #include <optional>
 
 namespace montecarta::analysis {
@@ -24,6 +25,10 @@ struct SimulatedWorld {
   /// Whether all runs share the path: the noise is on the controls that filters receive.
   bool same_path = true;
   Sensor sensor = {};
+  /// [m] Deviation of a fix of the position, and the number of scans from one to the next; 0 if
+  /// there are none.
+  double sigma_fix = 1.0;
+  std::size_t scans_per_fix = 0;
   /// Deviations of what filters know at the start; nullopt if they estimate the map and know the
   /// start exactly.
   std::optional<PriorDeviations> prior = {};

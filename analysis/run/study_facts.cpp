@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/run/study_facts.hpp"
 
+#include "analysis/statistics/spread.hpp"
 #include "engine/errors.hpp"
 #include "engine/runs/monte_carlo.hpp"
 
 #include <charconv>
+#include <cmath>
 #include <optional>
 #include <sstream>
 #include <string_view>
@@ -24,14 +26,26 @@ std::optional<std::string> setting_in(const std::string& study_text, std::string
   return std::nullopt;
 }
 
-double margin_from(const std::string& text) {
-  double margin = 0.0;
+/// The number in `text`; NaN if it is none.
+double number_in(const std::string& text) {
+  double number = 0.0;
   const char* const last = text.data() + text.size();
-  const auto [end, error] = std::from_chars(text.data(), last, margin);
-  const bool is_good = error == std::errc() && end == last && margin >= kLeastMargin;
-  if (is_good && margin <= kMostMargin) return margin;
+  const auto [end, error] = std::from_chars(text.data(), last, number);
+  return error == std::errc() && end == last ? number : kNaN;
+}
+
+double margin_from(const std::string& text) {
+  const double margin = number_in(text);
+  if (margin >= kLeastMargin && margin <= kMostMargin) return margin;
   throw StudyError("study.within = " + text +
                    " (a ratio from 1.001 to 100 is needed): choose another file");
+}
+
+double time_from(const std::string& text) {
+  const double time = number_in(text);
+  if (std::isfinite(time)) return time;
+  throw StudyError("study.judge_from = " + text +
+                   " (a time in seconds is needed): choose another file");
 }
 
 }  // namespace
@@ -39,6 +53,7 @@ double margin_from(const std::string& text) {
 StudyFacts study_facts_in(const std::string& study_text, std::uint64_t runs) {
   StudyFacts facts;
   if (const auto within = setting_in(study_text, "within")) facts.within = margin_from(*within);
+  if (const auto from = setting_in(study_text, "judge_from")) facts.judge_from = time_from(*from);
   const std::string until = setting_in(study_text, "until").value_or("");
   facts.stops_early = !until.empty();
   const std::string with_runs = std::string(kUntilVerdict) + ", ";  // "verdict, 100 runs"

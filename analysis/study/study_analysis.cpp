@@ -167,8 +167,10 @@ StudyAnalysis begin(const ResultFile& file, double level, std::optional<double> 
   StudyFacts facts = study_facts_of(file);
   study.within = within.value_or(facts.within);
   study.runs_at_analyses = std::move(facts.runs_at_analyses);
-  study.times = file.scan_times();
-  for (const std::uint32_t scan : file.description().joint_scans) {
+  study.judged = judged_scans_of(file);
+  study.times.assign(file.scan_times().begin() + static_cast<std::ptrdiff_t>(study.judged.first),
+                     file.scan_times().end());
+  for (const std::uint32_t scan : judged_joint_scans(file)) {
     study.joint_times.push_back(study.times[scan]);
   }
   study.duration = study.times.empty() ? 0.0 : study.times.back();
@@ -211,7 +213,11 @@ bool StudyAnalysis::has_failures() const {
 }
 
 std::string StudyAnalysis::scans_text() const {
-  const std::string scans = std::to_string(times.size()) + " scans";
+  const std::string scans = std::to_string(judged.first + times.size()) + " scans";
+  if (judged.first > 0) {
+    return scans + " each, judged from " + exact_text(judged.from) + " s on (" +
+           std::to_string(times.size()) + " scans)";
+  }
   return own_drives > 0 ? "up to " + scans : scans + " each";
 }
 

@@ -3,6 +3,7 @@
 
 #include "analysis/run/cramer_rao.hpp"
 #include "analysis/run/imported_state.hpp"
+#include "analysis/run/run_reader.hpp"
 #include "analysis/study/cell_analysis.hpp"
 #include "engine/records/result_file.hpp"
 #include "engine/threads/parallel.hpp"
@@ -47,7 +48,8 @@ struct StudyAnalysis {
   /// {interim analysis} number of runs; empty if there is only one.
   std::vector<std::uint64_t> runs_at_analyses;
   double duration = 0.0;            ///< [s] time of the last scan
-  std::vector<double> times;        ///< [s] {scan} time of each scan
+  JudgedScans judged;               ///< scans that count; all others are left out everywhere
+  std::vector<double> times;        ///< [s] {judged scan} time of each scan
   std::vector<double> joint_times;  ///< [s] {scan with joint estimates} time of each of these scans
   /// Whether the true path is known: without it there are no errors and no NEES.
   bool has_truth = true;
@@ -60,7 +62,8 @@ struct StudyAnalysis {
   std::vector<CellAnalysis> cells;
 
   bool has_failures() const;
-  /// Number of scans in words: "200 scans each", "up to 200 scans".
+  /// Number of scans in words: "200 scans each", "up to 200 scans", and from when on they are
+  /// judged.
   std::string scans_text() const;
 };
 

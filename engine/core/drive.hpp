@@ -48,6 +48,9 @@ struct Detection {
   double& operator[](std::size_t i) { return values[i]; }
 };
 
+/// A measurement of the position of the vehicle in the world [m].
+using PositionFix = Eigen::Vector2d;
+
 /// All detections of one instant; may be empty. Identities differ, except clutter and unidentified.
 using Scan = std::span<const Detection>;
 
@@ -90,10 +93,17 @@ struct Drive {
   std::vector<Pose> truth;                ///< {step} pose after the step; empty if unknown
   std::vector<Detection> detections;      ///< detections of all scans, in order
   std::vector<std::uint32_t> scan_begin;  ///< scans() + 1 offsets into `detections`
+  /// {scan} fix of the position at the instant of each scan, if there is one; empty if the vehicle
+  /// has no sensor of its position.
+  std::vector<std::optional<PositionFix>> fixes = {};
   /// Knowledge of the filter before the first step; nullopt if it starts exactly at
   /// Itinerary::start and without landmarks.
   std::optional<Prior> prior = {};
 
+  /// The fix at scan number `s`.
+  std::optional<PositionFix> fix(std::size_t s) const {
+    return fixes.empty() ? std::nullopt : fixes[s];
+  }
   Scan scan(std::size_t s) const {
     return Scan(detections).subspan(scan_begin[s], scan_begin[s + 1] - scan_begin[s]);
   }

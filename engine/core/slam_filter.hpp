@@ -94,7 +94,7 @@ struct ScanReport {
   bool resampled = false;
   /// log p(scan | past scans) of the matched detections. With unknown association it includes log
   /// p0 (EQUATIONS 17) for each detection without a match, so that all particles have as many
-  /// factors.
+  /// factors. A fix of the position is a factor too.
   double log_likelihood = 0.0;
   double nis = 0.0;           ///< normalised innovation squared, sum over matched detections
   std::uint32_t nis_dof = 0;  ///< degrees of freedom of nis
@@ -139,6 +139,12 @@ class SlamFilter {
   }
   /// Predicts by `control`, held for `duration` [s].
   virtual void predict(const StepContext& context, const Control& control, double duration) = 0;
+  /// Takes a fix of the position at the instant of the next update(), which uses it before its
+  /// scan. Called only if the filter declares that it takes fixes.
+  virtual void take_fix(const PositionFix& fix) {
+    (void)fix;
+    expect(false, "a filter that takes no fixes of the position is given one");
+  }
   /// Updates with `scan`, which may be empty.
   virtual void update(const StepContext& context, Scan scan) = 0;
   /// Returns the estimate before resampling after update() (EQUATIONS 4), else the predicted one.

@@ -53,6 +53,8 @@ enum class Draw : std::uint8_t {
   world_landmark = 4,    ///< displacement of landmarks in random maps
   world_start = 5,       ///< error of the start that a filter is given
   world_survey = 6,      ///< error of a known landmark that a filter is given, index = landmark
+  world_fix = 7,         ///< noise of a fix of the position
+  world_increment = 8,   ///< noise of a step, besides that of its control
   motion_sample = 16,    ///< motion noise of FastSLAM I, index = particle
   pose_proposal = 17,    ///< draw from the proposal, index = particle
   resampling = 18,       ///< index = 0 (systematic) or particle

@@ -47,6 +47,7 @@ std::string_view take_step(const RunConditions& conditions, const StepContext& c
   if (!control.stands(itinerary.moving_controls))
     filter.predict(context, control, itinerary.duration(step));
   for (; scan < itinerary.scans() && itinerary.scan_step[scan] == step; ++scan) {
+    if (const auto fix = conditions.drive.fix(scan)) filter.take_fix(*fix);
     filter.update(context, conditions.drive.scan(scan));
     const std::string_view flaw = defect_of(recorder.after_scan(filter, scan));
     if (!flaw.empty()) return flaw;

@@ -7,6 +7,7 @@
 #include "filters/models/ackermann.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace montecarta::experiments {
 namespace {
@@ -171,9 +172,45 @@ void SimulatedDrive::generate(std::uint64_t run, Drive& drive) const {
   } else {
     generate_measured(run, drive);
   }
+  take_fixes(run, drive);
+}
+
+/// Fixes are taken at every n-th scan, n = scans_per_fix. Their noise is drawn apart from that of
+/// the detections.
+void SimulatedDrive::take_fixes(std::uint64_t run, Drive& drive) const {
+  drive.fixes.clear();
+  if (scenario_.scans_per_fix == 0) return;
+  drive.fixes.resize(itinerary_.scans());
+  for (std::size_t s = scenario_.scans_per_fix; s <= itinerary_.scans();
+       s += scenario_.scans_per_fix) {
+    const std::uint32_t step = itinerary_.scan_step[s - 1];
+    RngStream draw(with(place(run, step), Draw::world_fix, 0));
+    const double x = draw.normal(), y = draw.normal();
+    const Pose& truth = drive.truth[step];
+    drive.fixes[s - 1] =
+        PositionFix(truth.x + scenario_.sigma_fix * x, truth.y + scenario_.sigma_fix * y);
+  }
 }
 
 void SimulatedDrive::drive_without_noise() {
+  scenario_.pilot == Pilot::constant ? hold_controls() : drive_along_waypoints();
+}
+
+void SimulatedDrive::take_step(const Pose& from, const Control& control) {
+  if (nominal_.size() == kMostSteps) throw_too_long(world_);
+  nominal_.push_back(control);
+  path_.push_back(move(from, control, 1.0 / scenario_.control_rate, scenario_.vehicle));
+}
+
+void SimulatedDrive::hold_controls() {
+  Control control{scenario_.speed};
+  control[controls_of(scenario_.vehicle).size() - 1] = scenario_.constant_turn;
+  const double steps = std::round(scenario_.drive_time * scenario_.control_rate);
+  for (double k = 0.0; k < steps; k += 1.0)
+    take_step(path_.empty() ? scenario_.start : path_.back(), control);
+}
+
+void SimulatedDrive::drive_along_waypoints() {
   WaypointPilot pilot(world_.waypoints, scenario_);
   const double step = step_length(scenario_);
   std::size_t target = pilot.next_waypoint();
@@ -185,10 +222,8 @@ void SimulatedDrive::drive_without_noise() {
       left = time_limit(pose, world_.waypoints[target], scenario_);
     }
     if ((left -= step) < 0.0) throw_unreachable(world_, target, scenario_);
-    if (nominal_.size() == kMostSteps) throw_too_long(world_);
-    nominal_.push_back(pilot.steer(pose));
-    pose = move(pose, nominal_.back(), 1.0 / scenario_.control_rate, scenario_.vehicle);
-    path_.push_back(pose);
+    take_step(pose, pilot.steer(pose));
+    pose = path_.back();
   }
 }
 
@@ -238,14 +273,13 @@ void SimulatedDrive::generate_measured(std::uint64_t run, Drive& drive) const {
 }
 
 void SimulatedDrive::generate_matched(std::uint64_t run, Landmarks landmarks, Drive& drive) const {
-  const bool is_open = scenario_.pilot == Pilot::open_loop;
+  const bool is_open = scenario_.pilot != Pilot::closed_loop;
   WaypointPilot pilot(world_.waypoints, scenario_);
   Pose pose = scenario_.start;
   for (std::size_t k = 0; k < itinerary_.steps(); ++k) {
     pilot.look_ahead(pose);
     drive.controls[k] = is_open ? nominal_[k] : pilot.steer(pose);
-    pose = move(pose, noisy(drive.controls[k], run, k), 1.0 / scenario_.control_rate,
-                scenario_.vehicle);
+    pose = moved_by(pose, noisy_step(drive.controls[k], run, k));
     drive.truth[k] = pose;
     if ((k + 1) % scenario_.steps_per_scan == 0) scan(place(run, k), pose, landmarks, drive);
   }
@@ -269,6 +303,19 @@ void SimulatedDrive::end_scan(const StreamIdentity& here, Drive& drive) const {
 std::size_t SimulatedDrive::expected_detections() const {
   const double clutter = scenario_.clutter_rate * static_cast<double>(itinerary_.scans());
   return 2 * (visible_.size() + static_cast<std::size_t>(clutter)) + 1000;
+}
+
+BodyStep<double> SimulatedDrive::noisy_step(const Control& control, std::uint64_t run,
+                                            std::size_t step) const {
+  const double duration = 1.0 / scenario_.control_rate;
+  const BodyStep<double> moved = body_step(scenario_.vehicle, noisy(control, run, step), duration);
+  const IncrementNoise& noise = scenario_.control.increment;
+  if (noise.is_none()) return moved;
+  RngStream draw(with(place(run, step), Draw::world_increment, 0));
+  std::array<double, 3> e{};
+  for (double& one : e) one = draw.normal();
+  const BodyStep<double> given = body_step(scenario_.vehicle, control, duration);
+  return perturbed(moved, noise.model, increment_deviations(noise, given, duration), e);
 }
 
 Control SimulatedDrive::noisy(const Control& control, std::uint64_t run, std::size_t step) const {

@@ -27,10 +27,11 @@ enum class NoiseMode {
   matched,           ///< the truth follows a noisy control; the filter is given the nominal one
 };
 
-/// The steering of a simulated vehicle if noise acts on the truth (EQUATIONS 1).
+/// The steering of a simulated vehicle (EQUATIONS 1).
 enum class Pilot {
   closed_loop,  ///< steering by the true pose, so that controls depend on the truth
-  open_loop     ///< steering by the controls of the noise-free drive
+  open_loop,    ///< the controls of the noise-free drive along the way-points
+  constant      ///< controls that are held for Scenario::drive_time
 };
 
 /// The positions of the landmarks in each run.
@@ -45,6 +46,8 @@ struct Scenario {
   Pilot pilot = Pilot::closed_loop;
   MapPlacement map = MapPlacement::fixed;
   double map_shift = 10.0;           ///< [m] largest displacement of a landmark of a random map
+  double drive_time = 60.0;          ///< [s] duration of the drive of Pilot::constant
+  double constant_turn = 0.0;        ///< its last control: steering angle [rad] or yaw rate [rad/s]
   std::uint32_t loops = 1;           ///< number of times round the way-points
   std::uint32_t steps_per_scan = 8;  ///< number of control steps per scan
   double control_rate = 40.0;        ///< [Hz] control steps per second
@@ -65,6 +68,9 @@ struct Scenario {
   double sigma_forward = 0.1;
   double sigma_left = 0.1;  ///< [m] standard deviation of a relative position across that axis
   double min_range = 0.0;   ///< [m] least measured range
+  /// Number of scans from one fix of the position to the next; 0: there are none.
+  std::uint32_t scans_per_fix = 0;
+  double sigma_fix = 1.0;  ///< [m] standard deviation of a fix, in x and in y
 };
 
 /// A landmark in view and its detection by a sensor without noise.
@@ -152,9 +158,9 @@ class RandomMap {
 /// error in the study.
 inline constexpr std::size_t kMostSteps = 20'000'000;
 
-/// A vehicle simulated along the way-points of a world (EQUATIONS 1). Every run has the steps and
-/// scans of the noise-free drive. If noise moves the truth, the vehicle keeps driving along the
-/// loop until the last step. The noise depends on (seed, run) only.
+/// A vehicle simulated along the way-points of a world, or with constant controls (EQUATIONS 1).
+/// Every run has the steps and scans of the noise-free drive. If noise moves the truth, the vehicle
+/// keeps driving along the loop until the last step. The noise depends on (seed, run) only.
 class SimulatedDrive final : public DriveSource {
  public:
   /// Throws StudyError if a way-point cannot be reached or the drive has more than kMostSteps
@@ -168,6 +174,9 @@ class SimulatedDrive final : public DriveSource {
 
  private:
   void drive_without_noise();
+  void drive_along_waypoints();
+  void hold_controls();
+  void take_step(const Pose& from, const Control& control);
   void fill_itinerary();
   void find_visible_landmarks();
   using Landmarks = std::span<const Eigen::Vector2d>;
@@ -176,7 +185,10 @@ class SimulatedDrive final : public DriveSource {
   void move_measured(std::uint64_t run, Drive& drive) const;
   void scan(const StreamIdentity& here, const Pose& pose, Landmarks landmarks, Drive& drive) const;
   void end_scan(const StreamIdentity& here, Drive& drive) const;
+  void take_fixes(std::uint64_t run, Drive& drive) const;
   std::size_t expected_detections() const;
+  /// Returns the step of a vehicle that is given `control`, with the noise of this run and step.
+  BodyStep<double> noisy_step(const Control& control, std::uint64_t run, std::size_t step) const;
   /// Returns `control` with the noise of this run and step.
   Control noisy(const Control& control, std::uint64_t run, std::size_t step) const;
   StreamIdentity place(std::uint64_t run, std::size_t step) const;

@@ -35,6 +35,11 @@ void add_controls(const Vehicle& vehicle, const ControlNoise& noise, Json& setti
     names.push_back(control.name);
     settings[si_name(control.sigma.key)] = noise.sigma[i++];
   }
+  const IncrementNoise& increment = noise.increment;
+  for (std::size_t k = 0; k < 3 && increment.model == IncrementModel::additive; ++k)
+    settings[si_name(kIncrementKeys[k])] = increment.sigma[k];
+  for (std::size_t k = 0; k < 4 && increment.model == IncrementModel::odometry; ++k)
+    settings[odometry_key(k)] = increment.alpha[k];
   if (!noise.grows()) return;
   for (std::size_t k = 0; k < noise.alpha.size(); ++k) settings[alpha_key(k)] = noise.alpha[k];
 }

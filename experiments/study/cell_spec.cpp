@@ -187,9 +187,18 @@ void refuse_equal_labels(const std::vector<CellSpec>& cells) {
   }
 }
 
-std::string filters_for(const std::string& sensor, std::span<const FilterKind> filters) {
+/// Returns whether the filter takes its sensors mounted elsewhere than at the pose.
+bool takes_mountings(const FilterKind& kind) {
+  return kind.sensors.empty() || kind.takes_mountings;
+}
+
+enum class Mounted { anywhere, elsewhere };
+
+std::string filters_for(const std::string& sensor, std::span<const FilterKind> filters,
+                        Mounted mounted = Mounted::anywhere) {
   std::vector<std::string> names;
   for (const FilterKind& kind : filters) {
+    if (mounted == Mounted::elsewhere && !takes_mountings(kind)) continue;
     if (kind.sensors.empty() || std::ranges::find(kind.sensors, sensor) != kind.sensors.end())
       names.push_back(kind.name);
   }
@@ -208,11 +217,11 @@ void refuse_kind(const Settings& settings, const CellSpec& cell,
 
 void refuse_mounting(const CellSpec& cell, const Sensor& sensor,
                      std::span<const FilterKind> filters) {
-  if (cell.filter->sensors.empty() || sensor.mounting.is_none()) return;
+  if (takes_mountings(*cell.filter) || sensor.mounting.is_none()) return;
   throw StudyError(cell.place + ": " + cell.filter->name +
                    " takes no sensor that is mounted elsewhere than at the pose (mount_forward, "
                    "mount_left, mount_turn_deg): set these to 0, or use one of " +
-                   filters_for(name_of(sensor), filters));
+                   filters_for(name_of(sensor), filters, Mounted::elsewhere));
 }
 
 void refuse_association(const Settings& settings, const CellSpec& cell, const Sensor& sensor) {
@@ -250,6 +259,14 @@ std::vector<CellSpec> read_cells(std::span<const IniEntry> entries, const std::s
   label_cells(cells);
   refuse_equal_labels(cells);
   return cells;
+}
+
+std::string filters_that(std::span<const FilterKind> filters, bool FilterKind::*takes) {
+  std::vector<std::string> names;
+  for (const FilterKind& kind : filters) {
+    if (kind.*takes && !kind.name.starts_with("plain_")) names.push_back(kind.name);
+  }
+  return joined(names);
 }
 
 std::string cell_line(const CellSpec& cell) {

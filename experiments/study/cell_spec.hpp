@@ -40,6 +40,10 @@ std::vector<CellSpec> read_cells(std::span<const IniEntry> entries, const std::s
 /// The line that reads back as this cell: "fastslam2 label=fastslam2_m100 particles=100 ...".
 std::string cell_line(const CellSpec& cell);
 
+/// Names of the filters that take something, e.g. &FilterKind::takes_prior, without the plain ones,
+/// for remedies.
+std::string filters_that(std::span<const FilterKind> filters, bool FilterKind::*takes);
+
 /// Throws StudyError if the filter of a cell does not accept the sensor of [belief] or its
 /// mounting, or must associate detections that do not determine the position of a landmark. The
 /// error suggests one of `filters`.

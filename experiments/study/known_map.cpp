@@ -9,15 +9,6 @@
 namespace montecarta::experiments {
 namespace {
 
-/// The filters that can be started from a known map, without the plain ones.
-std::string filters_with_prior(std::span<const FilterKind> filters) {
-  std::vector<std::string> names;
-  for (const FilterKind& kind : filters) {
-    if (kind.takes_prior && !kind.name.starts_with("plain_")) names.push_back(kind.name);
-  }
-  return joined(names);
-}
-
 /// Throws StudyError if a true deviation is given that has no effect.
 void refuse_deviations(const Settings& settings) {
   for (const char* key : {"map_sigma_m", "start_sigma_m", "start_sigma_deg"}) {
@@ -58,7 +49,8 @@ void refuse_known_map(const Settings& settings, std::span<const CellSpec> cells,
     throw StudyError(cell.place + ": " + cell.filter->name +
                      " with belief.map = known (it cannot be started from a known map): use one "
                      "of " +
-                     filters_with_prior(filters) + ", or set belief.map = estimated");
+                     filters_that(filters, &FilterKind::takes_prior) +
+                     ", or set belief.map = estimated");
   }
 }
 

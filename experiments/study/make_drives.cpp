@@ -4,6 +4,7 @@
 #include "engine/errors.hpp"
 #include "experiments/drives/simulated_drive.hpp"
 #include "experiments/recordings/recorded_drive.hpp"
+#include "experiments/study/fixes.hpp"
 #include "experiments/study/known_map.hpp"
 #include "experiments/study/read_drives.hpp"
 #include "experiments/study/vehicle_and_sensor.hpp"
@@ -36,12 +37,26 @@ double min_range_of(const Settings& s) {
                    s.text("scenario", "max_range") + ", so nothing is detected: lower it");
 }
 
+void take_pilot(const Settings& s, Scenario& scenario) {
+  const char* in = "scenario";
+  const std::string& pilot = s.text(in, "pilot");
+  if (pilot == "open_loop") scenario.pilot = Pilot::open_loop;
+  if (pilot != "constant") return;
+  scenario.pilot = Pilot::constant;
+  scenario.drive_time = s.number(in, "drive_time");
+  scenario.constant_turn = s.has(in, "constant_steer_deg") ? s.radians(in, "constant_steer_deg")
+                                                           : s.radians(in, "constant_yaw_rate_deg");
+  if (scenario.drive_time * s.number(in, "scan_rate") >= 1.0) return;
+  throw StudyError(s.place(in, "drive_time") + ": drive_time = " + s.text(in, "drive_time") +
+                   " s ends before the first scan: enlarge it, or scan_rate");
+}
+
 Scenario scenario_of(const Settings& s) {
   Scenario scenario;
   const char* in = "scenario";
   scenario.noise =
       s.text(in, "noise") == "matched" ? NoiseMode::matched : NoiseMode::measured_control;
-  if (s.has(in, "pilot") && s.text(in, "pilot") == "open_loop") scenario.pilot = Pilot::open_loop;
+  take_pilot(s, scenario);
   scenario.map = s.text(in, "map") == "random" ? MapPlacement::random : MapPlacement::fixed;
   scenario.map_shift = s.number(in, "map_shift");
   scenario.loops = static_cast<std::uint32_t>(s.count(in, "loops"));
@@ -57,6 +72,8 @@ Scenario scenario_of(const Settings& s) {
   scenario.waypoint_radius = s.number(in, "waypoint_radius");
   scenario.clutter_rate = s.number(in, "clutter_rate");
   scenario.miss_probability = s.number(in, "miss_probability");
+  scenario.scans_per_fix = scans_per_fix(s);
+  if (scenario.scans_per_fix > 0) scenario.sigma_fix = s.number(in, "sigma_fix");
   scenario.start = {s.number(in, "start_x"), s.number(in, "start_y"),
                     wrap(s.radians(in, "start_heading_deg"))};
   return scenario;

@@ -5,6 +5,7 @@
 #include "engine/random/stream.hpp"
 #include "engine/records/columns.hpp"
 #include "experiments/study/enough_runs.hpp"
+#include "experiments/study/fixes.hpp"
 #include "experiments/study/known_map.hpp"
 #include "experiments/study/make_drives.hpp"
 #include "experiments/study/vehicle_and_sensor.hpp"
@@ -26,8 +27,11 @@ Belief belief_of(const Settings& s, const CellSpec& spec) {
   ControlNoise control = control_noise_of(s, in);
   for (double& sigma : control.sigma) sigma *= motion;
   for (double& alpha : control.alpha) alpha *= motion * motion;
+  for (double& sigma : control.increment.sigma) sigma *= motion;
+  for (double& alpha : control.increment.alpha) alpha *= motion * motion;
   Belief belief{.vehicle = vehicle_of(s, in), .control = control};
   take_sensor(s, in, sensor, belief);
+  if (const auto sigma = believed_sigma_fix(s)) belief.sigma_fix = sensor * *sigma;
   return belief;
 }
 
@@ -183,6 +187,23 @@ void require_verdict(const Study& study) {
   }
 }
 
+/// Throws StudyError if no scan is judged, or if the drives of runs have times of their own.
+void refuse_judging_from(const Study& study, const Itinerary& itinerary) {
+  const double from = study.settings.number("study", "judge_from");
+  if (from == 0.0) return;
+  const std::string problem = study.settings.place("study", "judge_from") +
+                              ": judge_from = " + study.settings.text("study", "judge_from") + " ";
+  if (!study.logs.empty()) {
+    throw StudyError(problem +
+                     "and a recorded drive (it is judged at the fixes of its references): take "
+                     "judge_from out");
+  }
+  const double last = itinerary.step_time.at(itinerary.scan_step.back());
+  if (from <= last) return;
+  throw StudyError(problem + "(s; the last scan is at " + to_text(last) +
+                   " s, so that nothing would be judged): give an earlier time");
+}
+
 /// Refuses to run a part of the runs if the stopping rule needs all first runs of a cell.
 void refuse_part(const Study& study) {
   if (!study.until->metric) return;
@@ -302,6 +323,7 @@ StudyPlan make_plan(const Study& study, std::optional<RunRange> range, ExternalP
   if (plan.columns.observability)
     refuse_column(study, "observability", objection_to_observability(study));
   plan.drives = drives_of(study, plan.seed);
+  refuse_judging_from(study, plan.drives->itinerary());
   plan.own_landmarks = own_landmarks_of(study, plan.seed);
   plan.scenario = scenario_facts(settings);
   plan.resolved_text = resolved_text(study);

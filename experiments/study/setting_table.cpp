@@ -85,6 +85,36 @@ void add_growth(const SectionOfTable& section) {
     section.number(alpha_key(i).c_str(), "SI", "0", 0, 1e6, kMeanings[i]);
 }
 
+/// Adds the noise of a step besides that of its controls (EQUATIONS 1).
+void add_increment_noise(const SectionOfTable& section, bool needs_matched) {
+  Setting& model = section.choice(
+      "increment_noise", {kIncrementNames.begin(), kIncrementNames.end()},
+      "noise of a step besides that of its controls. With additive the displacement forward and to "
+      "the left and the turn have independent noise. With odometry the rotation, translation and "
+      "rotation of a step have (Thrun, Burgard, Fox: Probabilistic Robotics, table 5.6).");
+  if (needs_matched) section.only_if(model, "noise", {"matched"});
+  static constexpr std::array<const char*, 3> kOf = {"displacement forward",
+                                                     "displacement to the "
+                                                     "left",
+                                                     "turn"};
+  for (std::size_t i = 0; i < kIncrementKeys.size(); ++i) {
+    const std::string meaning = std::string("standard deviation of the ") + kOf[i] +
+                                " after one second. Equation (1.11) of EQUATIONS.";
+    const char* const unit = i < 2 ? "m/s^0.5" : "deg/s^0.5";
+    section.only_if(section.number(kIncrementKeys[i], unit, "0", 0, 1e6, meaning.c_str()),
+                    "increment_noise", {"additive"});
+  }
+  static constexpr std::array<const char*, 4> kMeanings = {
+      "variance of a rotation per its own square. Equation (1.12) of EQUATIONS.",
+      "variance of a rotation per squared translation. Equation (1.12) of EQUATIONS.",
+      "variance of the translation per its own square. Equation (1.12) of EQUATIONS.",
+      "variance of the translation per squared rotations. Equation (1.12) of EQUATIONS."};
+  for (std::size_t i = 0; i < kMeanings.size(); ++i) {
+    section.only_if(section.number(odometry_key(i).c_str(), "SI", "0", 0, 1e6, kMeanings[i]),
+                    "increment_noise", {"odometry"});
+  }
+}
+
 /// Adds the kind of sensor, its mounting and its noise. Deviations are bounded below by `least`.
 void add_sensor_kind(const SectionOfTable& section, double least) {
   section.choice("sensor", sensor_names(),
@@ -127,12 +157,12 @@ void add_course(const SectionOfTable& scenario) {
       "and the filter is given noisy measurements of the controls. With matched the noise "
       "acts on the vehicle, and the filter is given the commanded controls, as filters assume "
       "(EQUATIONS 1).");
-  Setting& pilot = scenario.choice(
-      "pilot", {"closed_loop", "open_loop"},
-      "whether the pilot sees the true pose. In closed_loop it steers by the true pose. In "
-      "open_loop it applies the controls of the noise-free drive, so that the vehicle "
-      "strays from the way-points.");
-  scenario.only_if(pilot, "noise", {"matched"});
+  scenario.choice(
+      "pilot", {"closed_loop", "open_loop", "constant"},
+      "how the vehicle is controlled. In closed_loop the pilot steers by the true pose. In "
+      "open_loop, only with noise = matched, it applies the controls of the noise-free drive, so "
+      "that the vehicle strays from the way-points. With constant the controls are held for "
+      "drive_time, in a circle or straight on, and way-points and loops have no effect.");
   scenario.choice(
       "map", {"fixed", "random"},
       "whether landmarks are displaced in every run. With fixed they are where the world has them. "
@@ -140,6 +170,21 @@ void add_course(const SectionOfTable& scenario) {
   scenario.number("map_shift", "m", "10", 0, 1e4,
                   "largest displacement of a landmark of a random map");
   add_map_deviation(scenario);
+}
+
+/// Adds the controls that are held if pilot = constant.
+void add_constant_controls(const SectionOfTable& scenario) {
+  const std::vector<std::string> constant{"constant"};
+  scenario.only_if(scenario.number("drive_time", "s", "60", 1e-3, 1e7, "duration of the drive"),
+                   "pilot", constant);
+  Setting& steer = scenario.number("constant_steer_deg", "deg", "0", -89, 89,
+                                   "steering angle that is held; positive to the left");
+  scenario.only_if(steer, "pilot", constant);
+  scenario.only_if(steer, "vehicle", {"front_axle", "rear_wheel"});
+  Setting& yaw_rate = scenario.number("constant_yaw_rate_deg", "deg/s", "0", -5700, 5700,
+                                      "yaw rate that is held; positive to the left");
+  scenario.only_if(yaw_rate, "pilot", constant);
+  scenario.only_if(yaw_rate, "vehicle", {"differential_drive", "omnidirectional"});
 }
 
 void add_drive(const SectionOfTable& scenario) {
@@ -155,12 +200,14 @@ void add_drive(const SectionOfTable& scenario) {
   scenario.number("waypoint_radius", "m", "1", 1e-3, 1e4,
                   "distance at which a way-point counts as reached");
   scenario.add_for_vehicles(vehicle_parameters(VehicleUse::pilot));
+  add_constant_controls(scenario);
   scenario.number("start_x", "m", "0", -1e6, 1e6, "x before the first step");
   scenario.number("start_y", "m", "0", -1e6, 1e6, "y before the first step");
   scenario.number("start_heading_deg", "deg", "0", -360, 360, "heading before the first step");
   add_start_deviations(scenario);
   scenario.add_for_vehicles(control_noise_parameters());
   add_growth(scenario);
+  add_increment_noise(scenario, true);
   add_sensor_kind(scenario, 0.0);
 }
 
@@ -176,6 +223,22 @@ void add_recording(const SectionOfTable& scenario) {
       "delay of the time stamps of the scans. A scan is taken this long before its time stamp.");
 }
 
+/// Adds the sensor of the position. It is believed as it is but for its deviation.
+void add_fixes(const SectionOfTable& scenario) {
+  scenario.choice("fixes", {"none", "position"},
+                  "measurements beside the detections of landmarks. With position the filters are "
+                  "given fixes of the position of the vehicle in the world, for instance of a "
+                  "satellite receiver.");
+  scenario.only_if(
+      scenario.number("fix_rate", "Hz", "1", 1e-4, 1e5, "fixes per second; must divide scan_rate"),
+      "fixes", {"position"});
+}
+void add_fix_deviation(const SectionOfTable& section, double least) {
+  Setting& sigma = section.number("sigma_fix", "m", "1", least, 1e6,
+                                  "standard deviation of a fix of the position, in x and in y");
+  sigma.conditions.push_back({"scenario", "fixes", {"position"}});
+}
+
 void add_scenario(std::vector<Setting>& table) {
   const SectionOfTable scenario("scenario", table), simulated("scenario", table, {"simulated"});
   scenario.choice("kind", {"simulated", "log"},
@@ -189,6 +252,8 @@ void add_scenario(std::vector<Setting>& table) {
   simulated.number("clutter_rate", "1", "0", 0, 100, "mean number of false alarms per scan");
   simulated.number("miss_probability", "1", "0", 0, 1,
                    "probability that a landmark in view is missed");
+  add_fixes(simulated);
+  add_fix_deviation(simulated, 0.0);
 }
 
 /// Makes a setting of [belief] default to that of [scenario] in a simulation. A setting with an
@@ -224,7 +289,9 @@ void add_belief(std::vector<Setting>& table) {
   belief.add_for_vehicles(vehicle_parameters(VehicleUse::motion));
   belief.add_for_vehicles(control_noise_parameters());
   add_growth(belief);
+  add_increment_noise(belief, false);
   add_sensor_kind(belief, kTiny);
+  add_fix_deviation({"belief", table, {"simulated"}}, kTiny);
   for (Setting& setting : std::span(table).subspan(first)) follow_scenario(setting);
   add_prior(belief, table);
 }
@@ -244,6 +311,9 @@ void add_study(const SectionOfTable& study) {
                "factor within which the NEES counts as consistent. A filter is consistent if its "
                "squared errors are shown to be too large or too small by this factor at "
                "most.");
+  study.number("judge_from", "s", "0", 0, 1e9,
+               "time from which scans are judged. Verdicts, tables and figures over runs leave out "
+               "earlier scans, for a filter that first has to converge.");
 }
 
 /// The default gates are chi-square 5.991 (95 %) and 25 with two degrees of freedom.

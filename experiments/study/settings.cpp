@@ -162,6 +162,15 @@ const Setting& known_setting(const IniEntry& entry) {
                           " (it would have no effect)");
 }
 
+/// The setting of that name, which must be in the table.
+const Setting& setting_called(const std::string& section, const std::string& key) {
+  const auto found = std::ranges::find_if(study_settings(), [&](const Setting& setting) {
+    return setting.section == section && setting.key == key;
+  });
+  expect(found != study_settings().end(), "a condition is on a setting that does not exist");
+  return *found;
+}
+
 [[noreturn]] void throw_out_of_place(const Setting& setting, const Condition& broken,
                                      const std::string& value, const std::string& place) {
   const auto in_belief = [&](const Setting& other) {
@@ -242,15 +251,16 @@ const Settings::SettingValue& Settings::at(std::string_view section, std::string
   return found->second;
 }
 
-/// The first condition of a setting that does not hold; nullptr if the setting applies.
+/// The first condition of a setting that does not hold; nullptr if the setting applies. If it is on
+/// a setting that does not apply itself, it is the condition that this one breaks.
 const Condition* Settings::broken_condition(const Setting& setting) const {
-  const auto is_broken = [&](const Condition& condition) {
-    const std::vector<std::string>& values = condition.values;
-    return !values.empty() &&
-           std::ranges::count(values, text(condition.section, condition.key)) == 0;
-  };
-  const auto found = std::ranges::find_if(setting.conditions, is_broken);
-  return found == setting.conditions.end() ? nullptr : &*found;
+  for (const Condition& condition : setting.conditions) {
+    const auto& [section, key, values] = condition;
+    if (values.empty()) continue;
+    if (!has(section, key)) return broken_condition(setting_called(section, key));
+    if (std::ranges::count(values, text(section, key)) == 0) return &condition;
+  }
+  return nullptr;
 }
 
 bool Settings::has(std::string_view section, std::string_view key) const {

@@ -3,6 +3,7 @@
 
 #include "engine/errors.hpp"
 #include "experiments/files/files.hpp"
+#include "experiments/study/fixes.hpp"
 #include "experiments/study/known_map.hpp"
 #include "experiments/study/read_drives.hpp"
 #include "experiments/text/words.hpp"
@@ -101,18 +102,46 @@ World world_of(const IniText& ini, const Settings& settings, const std::filesyst
 /// not change.
 struct SilentSetting {
   std::string section, key, value;
+  /// The setting is left out only if this one has this value or does not apply.
+  struct Other {
+    std::string section, key, value;
+  };
+  std::optional<Other> if_too = {};
+
+  bool applies(const Settings& settings) const {
+    return !if_too || !settings.has(if_too->section, if_too->key) ||
+           settings.text(if_too->section, if_too->key) == if_too->value;
+  }
 };
 
-bool is_silent(const std::string& section, const std::string& key, const std::string& value) {
-  static const std::vector<SilentSetting> silent{{"study", "until", ""},
-                                                 {"record", "full_runs", "0"},
-                                                 {"scenario", "map_sigma_m", "0"},
-                                                 {"scenario", "start_sigma_m", "0"},
-                                                 {"scenario", "start_sigma_deg", "0"},
-                                                 {"belief", "map", "estimated"}};
+bool is_silent(const Settings& settings, const std::string& section, const std::string& key,
+               const std::string& value) {
+  static const std::vector<SilentSetting> silent{
+      {"study", "until", ""},
+      {"study", "judge_from", "0"},
+      {"record", "full_runs", "0"},
+      {"scenario", "map_sigma_m", "0"},
+      {"scenario", "start_sigma_m", "0"},
+      {"scenario", "start_sigma_deg", "0"},
+      {"scenario", "pilot", "closed_loop", {{"scenario", "noise", "measured-control"}}},
+      {"scenario", "increment_noise", "none"},
+      {"belief", "increment_noise", "none", {{"scenario", "increment_noise", "none"}}},
+      {"scenario", "fixes", "none"},
+      {"belief", "map", "estimated"}};
   return std::ranges::any_of(silent, [&](const SilentSetting& one) {
-    return one.section == section && one.key == key && one.value == value;
+    return one.section == section && one.key == key && one.value == value && one.applies(settings);
   });
+}
+
+/// Refuses a pilot that would drive as another one does.
+void refuse_pilot(const Settings& settings) {
+  if (settings.scenario_kind() != "simulated" || settings.text("scenario", "noise") == "matched")
+    return;
+  if (settings.text("scenario", "pilot") != "open_loop") return;
+  throw StudyError(settings.place("scenario", "pilot") +
+                   ": pilot = open_loop with noise = measured-control (the vehicle obeys its "
+                   "controls, so that it drives as in closed_loop): remove it, or set noise = "
+                   "matched");
 }
 
 void refuse_world(const IniText& ini, const Settings& settings) {
@@ -147,6 +176,8 @@ Study parse_study(const std::string& text, const std::string& name,
   }
   refuse_sensors(study.settings, study.cells, filters);
   refuse_known_map(study.settings, study.cells, filters, landmarks_of(study).size());
+  refuse_fixes(study.settings, study.cells, filters);
+  refuse_pilot(study.settings);
   study.until = parse_stopping_rule(study.settings.text("study", "until"),
                                     study.settings.place("study", "until"));
   if (study.until) study.settings.replace("study", "until", text_of(*study.until));
@@ -175,8 +206,9 @@ Study read_study(const std::filesystem::path& path, std::span<const FilterKind> 
 std::vector<std::pair<std::string, std::string>> stated_settings(const Settings& settings,
                                                                  const std::string& section) {
   auto stated = settings.section(section);
-  std::erase_if(stated,
-                [&](const auto& pair) { return is_silent(section, pair.first, pair.second); });
+  std::erase_if(stated, [&](const auto& pair) {
+    return is_silent(settings, section, pair.first, pair.second);
+  });
   return stated;
 }
 

@@ -48,6 +48,7 @@ FilterKind de_srcd_kind() {
           .options = population_options(
               {options_of_evolution(), central_difference_options(), {map_uncertainty_option()}}),
           .takes_prior = true,
+          .takes_fixes = true,
           .restrict_reports =
               [](const FilterSetup& setup, Capabilities& reports) {
                 const EvolutionMode mode = evolved_settings(setup.options).mode;

@@ -4,6 +4,7 @@
 #include "filters/fastslam/concepts.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -16,10 +17,11 @@ template <class Real, class Proposal, class Associating>
 requires Associator<Associating, Real> && PoseProposal<Proposal, Real, Associating>
 class FastSlam final : public SlamFilter {
  public:
-  /// `components` is the number of components of a detection.
-  FastSlam(const PopulationSettings& settings, std::size_t components, Proposal proposal,
+  /// `belief` has the sensor of the detections and the deviation of fixes.
+  FastSlam(const PopulationSettings& settings, const Belief& belief, Proposal proposal,
            Associating association)
-      : components_(components),
+      : components_(components_of(belief.sensor).size()),
+        sigma_fix_(belief.sigma_fix),
         proposal_(std::move(proposal)),
         association_(std::move(association)),
         population_(settings),
@@ -35,6 +37,7 @@ class FastSlam final : public SlamFilter {
   /// from it. All have the known map.
   void start_from(const StepContext& context, const Prior& prior) override {
     now_ = context;
+    fix_.reset();
     population_.start();
     maps_.clear();
     association_.start();
@@ -54,14 +57,18 @@ class FastSlam final : public SlamFilter {
     proposal_.predict(context, control, duration, poses_);
   }
 
+  void take_fix(const PositionFix& fix) override { fix_ = fix; }
+
   void update(const StepContext& context, Scan scan) override {
     now_ = context;
     resample();
     population_.begin_scan();
     predict_poses(context);
+    if (fix_) use_fix(context);
     association_.associate(context, scan, maps_, predicted_);
-    const bool found = !association_.matched_nothing();
+    const bool found = fix_ || !association_.matched_nothing();
     if (found) weigh_and_draw(context);
+    fix_.reset();
     population_.report().association = association_.counts(weights());
     if (found) initialise_landmarks(context);
     population_.report().map_size = association_.map_size(maps_, weights());
@@ -98,6 +105,15 @@ class FastSlam final : public SlamFilter {
     });
   }
 
+  /// Conditions the predicted poses on the fix of the position, which is linear (EQUATIONS (24.1)).
+  void use_fix(const StepContext& context) {
+    const double variance = sigma_fix_.value() * sigma_fix_.value();
+    log_weights_of_fix_.resize(poses_.size());
+    BlockTasks<Real>(poses_.size()).run(context, [&](std::size_t /*task*/, std::size_t b) {
+      log_weights_of_fix_[b] = update_with_fix(predicted_[b], *fix_, variance);
+    });
+  }
+
   void weigh_and_draw(const StepContext& context) {
     const BlockTasks<Real> tasks(poses_.size());
     innovations_.start(context, tasks.count(), association_.matches());
@@ -119,8 +135,9 @@ class FastSlam final : public SlamFilter {
     poses_[b] = proposal_.draw(context, b, refined);
     const Weighing<Real> weighing =
         proposal_.update_map(b, poses_[b], association_, refined, innovations);
-    population_.weigh(
-        b, {weighing.log_weight + association_.unmatched_log_weight(b), weighing.faults});
+    Real log_weight = weighing.log_weight + association_.unmatched_log_weight(b);
+    if (fix_) log_weight += log_weights_of_fix_[b];
+    population_.weigh(b, {log_weight, weighing.faults});
   }
 
   void initialise_landmarks(const StepContext& context) {
@@ -146,7 +163,10 @@ class FastSlam final : public SlamFilter {
   }
 
   StepContext now_ = StepContext::before_all_steps();  ///< the present step, with its threads
-  std::size_t components_;
+  std::size_t components_;                             ///< number of components of a detection
+  std::optional<double> sigma_fix_;                    ///< [m] deviation of a fix of the position
+  std::optional<PositionFix> fix_;                     ///< fix for the next scan
+  std::vector<Real> log_weights_of_fix_;
   Proposal proposal_;
   Associating association_;
   Population<Real> population_;

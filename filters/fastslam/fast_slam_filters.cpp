@@ -26,6 +26,7 @@ FilterKind refined_kind(const char* name, const char* long_name, const char* sou
           .reports = {.particles = true, .mixture = true},
           .options = std::move(options),
           .takes_prior = true,
+          .takes_fixes = true,
           .restrict_reports =
               [](const FilterSetup& setup, Capabilities& reports) {
                 if (weight_form(setup.options) == WeightForm::ratio) reports.mixture = false;
@@ -48,6 +49,7 @@ FilterKind fastslam1_kind() {
           .sensors = {},
           .delays_initialisation = true,
           .takes_prior = true,
+          .takes_fixes = true,
           .make = make_fastslam1_of_sensor<Lanes>};
 }
 

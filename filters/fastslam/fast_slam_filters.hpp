@@ -29,8 +29,7 @@ std::unique_ptr<SlamFilter> make_fast_slam(const FilterSetup& setup,
                                            const PopulationSettings& settings, Proposal proposal) {
   const auto with = [&](auto association) -> std::unique_ptr<SlamFilter> {
     return std::make_unique<FastSlam<Real, Proposal, decltype(association)>>(
-        settings, components_of(setup.belief.sensor).size(), std::move(proposal),
-        std::move(association));
+        settings, setup.belief, std::move(proposal), std::move(association));
   };
   const bool is_known = setup.association.kind == Association::known;
   if constexpr (FixesLandmark<typename SensorPolicy::Kind>) {

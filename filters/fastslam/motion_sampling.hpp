@@ -28,7 +28,12 @@ class MotionSampling {
           .run_together(context, [&](std::size_t b, std::size_t n) {
             const auto first = static_cast<std::uint32_t>(b * kLanesOf<Real>);
             const StreamIdentity noise = context.identity(Draw::motion_sample, first);
-            sample_motion(vehicle, std::span(poses).subspan(b, n), control, sigma, noise, duration);
+            const auto block = std::span(poses).subspan(b, n);
+            if (belief_.control.increment.is_none()) {
+              sample_motion(vehicle, block, control, sigma, noise, duration);
+            } else {
+              sample_increments(vehicle, block, control, sigma, noise, duration);
+            }
           });
     };
     std::visit(move_all, belief_.vehicle);
@@ -91,6 +96,29 @@ class MotionSampling {
                              control[1] + sigma[1] * e[0][b].second, Real(0.0)};
       if constexpr (kPairs > 1) sample[2] = control[2] + sigma[2] * e[1][b].first;
       poses[b] = moved_by(poses[b], body_step_of(vehicle, sample, duration));
+    }
+  }
+
+  /// Does the same with noise of the step, too, whose numbers follow those of the controls.
+  template <class V>
+  void sample_increments(const V& vehicle, std::span<BasicPose<Real>> poses, const Control& control,
+                         const std::array<double, Control::kMost>& sigma,
+                         const StreamIdentity& noise, double duration) const {
+    constexpr std::size_t kPairs = (kControlsOf<V> + 1) / 2;
+    const IncrementNoise& increment = belief_.control.increment;
+    const std::array<double, 3> deviations =
+        increment_deviations(increment, body_step(belief_.vehicle, control, duration), duration);
+    std::array<std::array<Pair<Real>, kTogether>, kPairs + 2> e;
+    for (std::uint32_t k = 0; k < e.size(); ++k)
+      fill_normal_pairs(std::span(e[k]).first(poses.size()), noise, k);
+    for (std::size_t b = 0; b < poses.size(); ++b) {
+      ControlOf<Real> sample{control[0] + sigma[0] * e[0][b].first,
+                             control[1] + sigma[1] * e[0][b].second, Real(0.0)};
+      if constexpr (kPairs > 1) sample[2] = control[2] + sigma[2] * e[1][b].first;
+      const BodyStep<Real> step = body_step_of(vehicle, sample, duration);
+      const std::array<Real, 3> normals{e[kPairs][b].first, e[kPairs][b].second,
+                                        e[kPairs + 1][b].first};
+      poses[b] = moved_by(poses[b], perturbed(step, increment.model, deviations, normals));
     }
   }
 

@@ -104,6 +104,11 @@ class CompressedGaussian {
     ++updates_;
     return near_.update_with(point_of_[slot], detected, iterations, expected);
   }
+  /// Does what JointGaussian::update_with_fix() does.
+  double update_with_fix(const PositionFix& fix, double sigma) {
+    ++updates_;
+    return near_.update_with_fix(fix, sigma);
+  }
   /// Does what JointGaussian::centre_on_pose() does, and makes all landmarks near.
   void centre_on_pose();
   void append(const Eigen::Vector2d& detection,

@@ -13,7 +13,7 @@ constexpr std::size_t kRoomAtFirst = 300;
 }  // namespace
 
 bool has_rotation_information(const FilterSetup& setup) {
-  return fixes_landmark(setup.belief.sensor) && !setup.map_is_known;
+  return fixes_landmark(setup.belief.sensor) && !setup.map_is_known && !setup.belief.sigma_fix;
 }
 
 JointBelief::JointBelief(const FilterSetup& setup, Retraction retraction, int iterations,
@@ -27,6 +27,7 @@ JointBelief::JointBelief(const FilterSetup& setup, Retraction retraction, int it
       moments_(moments),
       retraction_(retraction),
       sigma_(deviations_of(setup.belief.sensor, setup.belief)),
+      sigma_fix_(setup.belief.sigma_fix),
       has_rotation_information_(has_rotation_information(setup)) {}
 
 void JointBelief::start(const Prior& prior) {
@@ -52,10 +53,12 @@ void JointBelief::add_known(const LandmarkEstimate& known) {
   system_.points.append(known.mean - place_of(system_.points.pose()));
 }
 
-void JointBelief::update_with(const MotionIncrement& motion, Scan scan) {
+void JointBelief::update_with(const MotionIncrement& motion, Scan scan,
+                              const std::optional<PositionFix>& fix) {
   outcome_ = {};
   used_detections_.clear();
   linearisation_->move(motion, system_);
+  if (fix) outcome_.log_likelihood += system_.gaussian.update_with_fix(*fix, sigma_fix_.value());
   association_.known() ? association_.pair_by_identity(scan) : pair_nearest(scan);
   select_matched();
   for (std::size_t k = 0; k < scan.size(); ++k) {

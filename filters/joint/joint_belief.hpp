@@ -31,9 +31,10 @@ class JointBelief {
 
   /// Starts from what is known of the pose and of the map.
   void start(const Prior& prior);
-  /// Predicts by `motion`, associates the scan, and conditions the Gaussian on the matched
-  /// detections.
-  void update_with(const MotionIncrement& motion, Scan scan);
+  /// Predicts by `motion`, conditions the Gaussian on the fix of the position if there is one,
+  /// associates the scan, and conditions the Gaussian on the matched detections.
+  void update_with(const MotionIncrement& motion, Scan scan,
+                   const std::optional<PositionFix>& fix = {});
   /// Initialises the landmarks that the scan of the last update_with() shows for the first time. If
   /// one detection does not fix a landmark, advances its DelayedInitialisation instead. Throws
   /// RunError if the map has grown beyond its limit.
@@ -96,7 +97,8 @@ class JointBelief {
   int iterations_;
   Moments moments_;
   Retraction retraction_;
-  Eigen::Vector2d sigma_;  ///< deviations of the components of a detection
+  Eigen::Vector2d sigma_;            ///< deviations of the components of a detection
+  std::optional<double> sigma_fix_;  ///< [m] deviation of a fix of the position
   bool has_rotation_information_;
   double rotation_information_ = 0.0;
   std::vector<NearestSearch> searches_;  ///< scratch: {detection} searches of a scan

@@ -39,9 +39,11 @@ class JointFilter final : public SlamFilter {
     advance(motion_, control, duration, belief_, motion_form_);
   }
 
+  void take_fix(const PositionFix& fix) override { fix_ = fix; }
+
   /// Throws std::runtime_error if the likelihood of the scan is not finite.
   void update(const StepContext& context, Scan scan) override {
-    joint_.update_with(motion_, scan);
+    joint_.update_with(motion_, scan, std::exchange(fix_, std::nullopt));
     motion_.restart();
     report_update(context, scan);
     is_at_scan_ = true;
@@ -64,6 +66,7 @@ class JointFilter final : public SlamFilter {
  private:
   void start_with(const Prior& prior) {
     motion_.restart();
+    fix_.reset();
     joint_.start(prior);
     is_at_scan_ = false;
     report_ = {};
@@ -88,7 +91,8 @@ class JointFilter final : public SlamFilter {
   Belief belief_;
   Motion motion_form_;
   JointBelief joint_;
-  MotionIncrement motion_;  ///< motion since the last scan
+  MotionIncrement motion_;          ///< motion since the last scan
+  std::optional<PositionFix> fix_;  ///< fix for the next scan
   bool is_at_scan_ = false;
   PoseMoments pose_at_scan_;  ///< moments at the last scan, before landmarks were initialised
   ScanReport report_;
@@ -157,7 +161,7 @@ FilterKind one_gaussian_kind(const char* name, const char* long_name, const char
       joint_kind(name, long_name, source,
                  {iterations_option(), linearised_motion_option(), moments_option("map")}, make);
   kind.sensors.clear();
-  kind.delays_initialisation = kind.takes_prior = true;
+  kind.delays_initialisation = kind.takes_prior = kind.takes_fixes = true;
   return kind;
 }
 
@@ -199,7 +203,7 @@ FilterKind ukf_slam_kind() {
   FilterKind kind = joint_kind(
       "ukf_slam", "unscented Kalman filter SLAM", "Huang, Mourikis, Roumeliotis 2009",
       {fitting_motion_option(), moments_option("map")}, linearised_elsewhere<by_sigma_points>);
-  kind.takes_prior = true;
+  kind.takes_prior = kind.takes_fixes = true;
   return kind;
 }
 

@@ -3,6 +3,7 @@
 
 #include "filters/models/car.hpp"
 #include "filters/models/differential_drive.hpp"
+#include "filters/models/increment_noise.hpp"
 #include "filters/models/omnidirectional.hpp"
 
 #include <algorithm>
@@ -164,6 +165,7 @@ struct ControlNoise {
   /// Factors of the squares of the speeds (all components but the last) and of the last component
   /// (steering angle or yaw rate): two in the variances of the speeds, two in that of the last.
   std::array<double, 4> alpha{};
+  IncrementNoise increment = {};  ///< noise of the step that the controls cause
 
   bool grows() const {
     return std::ranges::any_of(alpha, [](double value) { return value != 0.0; });

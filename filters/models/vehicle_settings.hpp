@@ -94,6 +94,14 @@ inline std::vector<Parameter> control_noise_parameters() {
 /// Key of alpha[i]; keys count from 1.
 inline std::string alpha_key(std::size_t i) { return "alpha_" + std::to_string(i + 1); }
 
+/// Names of IncrementModel in study files, in the order of the enumerators.
+inline constexpr std::array<const char*, 3> kIncrementNames = {"none", "additive", "odometry"};
+/// Keys of IncrementNoise::sigma.
+inline constexpr std::array<const char*, 3> kIncrementKeys = {
+    "sigma_increment_forward", "sigma_increment_left", "sigma_increment_heading_deg"};
+/// Key of IncrementNoise::alpha[i].
+inline std::string odometry_key(std::size_t i) { return "odometry_" + alpha_key(i); }
+
 /// The text of a setting; nullopt if it is not set.
 using SettingText = std::function<std::optional<std::string>(const std::string& key)>;
 /// The value of a setting as a number; nullopt if it is not set.
@@ -137,6 +145,24 @@ void for_each_setting(const Vehicle& vehicle, const Use& use) {
       vehicle);
 }
 
+/// The noise of a step. Its model is that of the settings that are there.
+inline IncrementNoise increment_noise_of(const SettingNumber& number) {
+  IncrementNoise noise;
+  for (std::size_t i = 0; i < noise.sigma.size(); ++i) {
+    const auto value = number(kIncrementKeys[i]);
+    if (!value) continue;
+    noise.model = IncrementModel::additive;
+    noise.sigma[i] = in_si(kIncrementKeys[i], *value);
+  }
+  for (std::size_t i = 0; i < noise.alpha.size(); ++i) {
+    const auto value = number(odometry_key(i));
+    if (!value) continue;
+    noise.model = IncrementModel::odometry;
+    noise.alpha[i] = *value;
+  }
+  return noise;
+}
+
 /// The noise of the controls of a vehicle; nullopt if a deviation is not set.
 inline std::optional<ControlNoise> control_noise_of(const Vehicle& vehicle,
                                                     const SettingNumber& number) {
@@ -151,6 +177,7 @@ inline std::optional<ControlNoise> control_noise_of(const Vehicle& vehicle,
   for (std::size_t k = 0; k < noise.alpha.size(); ++k) {
     noise.alpha[k] = number(alpha_key(k)).value_or(0.0);
   }
+  noise.increment = increment_noise_of(number);
   return noise;
 }
 

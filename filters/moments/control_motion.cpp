@@ -227,13 +227,23 @@ MotionIncrement moved_by_rule(const V& vehicle, const MotionIncrement& before,
           sheared(before.covariance(), -moved.y, moved.x) + turned(noise, course)};
 }
 
+/// `after`, with the noise of the step from `before` besides that of its controls.
+MotionIncrement with_increment_noise(MotionIncrement after, const MotionIncrement& before,
+                                     const Control& control, double duration,
+                                     const Belief& belief) {
+  if (belief.control.increment.is_none()) return after;
+  after.add_increment_noise(direction_of(before.pose().heading), control, duration, belief);
+  return after;
+}
+
 template <std::size_t N>
 MotionIncrement moved_by_rule(const MotionIncrement& before, const Control& control,
                               double duration, const Belief& belief, const ControlRule<N>& rule) {
   const auto sigma = deviations_of(belief.control, control, belief.vehicle);
-  return std::visit(
+  const MotionIncrement after = std::visit(
       [&](const auto& one) { return moved_by_rule(one, before, control, duration, sigma, rule); },
       belief.vehicle);
+  return with_increment_noise(after, before, control, duration, belief);
 }
 
 // The order is that of the enumerators.
@@ -252,9 +262,10 @@ MotionIncrement moved_by_sigma_points(const MotionIncrement& before, const Contr
                                       double duration, const Belief& belief,
                                       const SigmaRule& rule) {
   const auto sigma = deviations_of(belief.control, control, belief.vehicle);
-  return std::visit(
+  const MotionIncrement after = std::visit(
       [&](const auto& one) { return moved(one, before, control, duration, sigma, rule); },
       belief.vehicle);
+  return with_increment_noise(after, before, control, duration, belief);
 }
 
 MotionIncrement moved_by_quadrature(const MotionIncrement& before, const Control& control,

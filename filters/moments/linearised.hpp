@@ -165,6 +165,22 @@ template <class Real, class Mask>
   return v;
 }
 
+/// Updates a pose Gaussian with a fix of the position of this variance [m^2], for which Hx is one
+/// for the position and zero else. Returns the log of the density of the innovation.
+template <class Real>
+Real update_with_fix(PoseGaussian<Real>& pose, const PositionFix& fix, double variance) {
+  const Symmetric3<Real>& P = pose.covariance;
+  const Innovation<Real> v{{Real(fix.x() - pose.mean.x), Real(fix.y() - pose.mean.y)},
+                           {P.xx + variance, P.xy, P.yy + variance},
+                           {P.xx, P.xy, P.xh},
+                           {P.xy, P.yy, P.yh}};
+  const auto everywhere = Real(0.0) == Real(0.0);
+  const Density<Real> density = condition(pose, v, everywhere);
+  Evidence<Real> evidence;
+  evidence.add(density.squared, density.determinant, Real(1.0), Real(1.0));
+  return evidence.log_density();
+}
+
 /// A displacement along and across the line of sight, rotated into the map.
 template <class Real>
 [[gnu::always_inline]] inline BasicPoint<Real> in_map(const Real& along, const Real& across,

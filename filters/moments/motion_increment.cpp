@@ -22,7 +22,19 @@ void MotionIncrement::advance(const V& vehicle, const Control& control, double d
 
 void MotionIncrement::advance(const Control& control, double duration, const Belief& belief) {
   const auto sigma = deviations_of(belief.control, control, belief.vehicle);
+  const double heading = pose_.heading;
   std::visit([&](const auto& one) { advance(one, control, duration, sigma); }, belief.vehicle);
+  if (belief.control.increment.is_none()) return;
+  add_increment_noise(direction_of(heading), control, duration, belief);
+}
+
+void MotionIncrement::add_increment_noise(const Direction<double>& course, const Control& control,
+                                          double duration, const Belief& belief) {
+  const BodyStep<double> step = body_step(belief.vehicle, control, duration);
+  for (const auto& column : increment_columns(belief.control.increment, step, duration)) {
+    const Point way = in_world(course, column.forward, column.left);
+    add_outer(covariance_, 1.0, {way.x, way.y, column.turn});
+  }
 }
 
 }  // namespace montecarta::filters

@@ -21,6 +21,10 @@ class MotionIncrement {
 
   void restart() { *this = MotionIncrement(); }
 
+  /// Adds the noise of a step, besides that of its controls, that began with the direction `course`
+  /// (EQUATIONS (1.11), (1.12)).
+  void add_increment_noise(const Direction<double>& course, const Control& control, double duration,
+                           const Belief& belief);
   /// Adds one control step of `duration` [s], linearised.
   void advance(const Control& control, double duration, const Belief& belief);
 

@@ -4,7 +4,9 @@
 #include "filters/plain/association.hpp"
 
 #include <cmath>
+#include <optional>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 namespace montecarta::filters::plain {
@@ -34,6 +36,7 @@ class EkfSlam : public SlamFilter {
       identities_.push_back(static_cast<std::int32_t>(identities_.size()));
     }
     report_ = {};
+    fix_.reset();
   }
 
   /// Moves the pose (EQUATIONS (1.3), (1.4)) and its covariances with the landmarks.
@@ -41,12 +44,17 @@ class EkfSlam : public SlamFilter {
     const auto step = linearised_move(pose(), u, duration, setup_.belief.vehicle);
     const ControlJacobian Fu = control_jacobian(step.jacobians);
     move_pose(step.pose, pose_jacobian(step.jacobians),
-              Fu * control_noise(setup_.belief, u) * Fu.transpose());
+              Fu * control_noise(setup_.belief, u) * Fu.transpose() +
+                  increment_covariance(setup_.belief, mean_(2), u, duration));
   }
 
+  void take_fix(const PositionFix& fix) override { fix_ = fix; }
+
   void update(const StepContext& /*context*/, Scan scan) override {
+    report_ = {};
+    if (fix_) use_fix(*std::exchange(fix_, std::nullopt));
     const std::vector<Pairing> pairings = associated(scan);
-    report_ = {.association = association_counts(scan, pairings, identities_)};
+    report_.association = association_counts(scan, pairings, identities_);
     for (std::size_t k = 0; k < scan.size(); ++k) {
       if (pairings[k].kind != PairingKind::matched) {
         report_.log_likelihood += log_unmatched(setup_);
@@ -100,6 +108,13 @@ class EkfSlam : public SlamFilter {
   virtual std::optional<LinearisedInnovation> linearised(std::size_t slot,
                                                          const Detection& z) const {
     return innovation_at(mean_.head<3>(), certain_landmark(mean_.segment<2>(row_of(slot))), z, R_);
+  }
+
+  /// H of the position of the vehicle: one for it and zero else (EQUATIONS (24.1)).
+  virtual Matrix<2, Eigen::Dynamic> derivative_of_position() const {
+    Matrix<2, Eigen::Dynamic> H = Matrix<2, Eigen::Dynamic>::Zero(2, mean_.size());
+    H.leftCols<2>().setIdentity();
+    return H;
   }
 
   /// A landmark whose covariance is left to S = H P H' + R.
@@ -167,17 +182,30 @@ class EkfSlam : public SlamFilter {
   }
 
   /// m <- m + K nu, P <- P - K S K' (EQUATIONS (15.1)).
-  void condition(const JointInnovation& v) {
+  void move_by(const JointInnovation& v) {
     const auto& [nu, S] = v.value;
     const Eigen::Matrix<double, Eigen::Dynamic, 2> K =
         S.llt().solve(v.cross.transpose()).transpose();
     move_mean(K * nu);
     P_ -= K * S * K.transpose();
     report_.log_likelihood += log_gaussian<2>(nu, S);
-    report_.nis += squared_distance(nu, S);
+  }
+  void condition(const JointInnovation& v) {
+    move_by(v);
+    report_.nis += squared_distance(v.value.nu, v.value.S);
     report_.nis_dof += 2;
   }
 
+  /// Conditions pose and map on a fix of the position.
+  void use_fix(const PositionFix& fix) {
+    const Matrix<2, Eigen::Dynamic> H = derivative_of_position();
+    const double sigma = setup_.belief.sigma_fix.value();
+    const Eigen::Matrix<double, Eigen::Dynamic, 2> cross = P_ * H.transpose();
+    const Matrix<2> S = H * cross + sigma * sigma * Matrix<2>::Identity();
+    move_by({{fix - mean_.head<2>(), S}, cross});
+  }
+
+  std::optional<PositionFix> fix_;        ///< fix for the next scan
   std::vector<std::int32_t> identities_;  ///< {landmark} of the detection that initialised it
   ScanReport report_;
 };

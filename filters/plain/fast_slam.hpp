@@ -40,6 +40,7 @@ class FastSlam : public SlamFilter {
     }
     forget_ancestors();
     report_ = {};
+    fix_.reset();
     is_after_scan_ = false;
   }
 
@@ -49,13 +50,19 @@ class FastSlam : public SlamFilter {
       predict_particle(context, i, particles_[i], control, duration);
   }
 
+  void take_fix(const PositionFix& fix) final { fix_ = fix; }
+
   /// The steps (1) to (6) of EQUATIONS 4.
   void update(const StepContext& context, Scan scan) final {
     resample();
     is_after_scan_ = true;
     report_ = {.ess = effective_size(particles_)};
-    for (Particle& p : particles_) p.pairings = pair(scan, p.map, p.pose, p.covariance, setup_);
-    const bool is_used = uses_anything();
+    for (Particle& p : particles_) {
+      p.log_weight_of_fix = fix_ ? use_fix(*fix_, p) : 0.0;
+      p.pairings = pair(scan, p.map, p.pose, p.covariance, setup_);
+    }
+    const bool is_used = fix_ || uses_anything();
+    fix_.reset();
     if (is_used) {
       innovations_.assign(scan.size(), {});
       for (std::uint32_t i = 0; i < particles_.size(); ++i) use_scan(context, i, scan);
@@ -161,10 +168,25 @@ class FastSlam : public SlamFilter {
         particles_, [&](const Particle& p) { return std::ranges::any_of(p.pairings, is_used); });
   }
 
+  /// Conditions the pose of a particle on a fix of the position and returns the log of the density
+  /// of its innovation (EQUATIONS (24.1)). A pose that counts as exact does not move.
+  double use_fix(const PositionFix& fix, Particle& p) const {
+    const double sigma = belief_.sigma_fix.value();
+    const Vector<2> nu = fix - p.pose.head<2>();
+    const Matrix<2> S = p.covariance.topLeftCorner<2, 2>() + sigma * sigma * Matrix<2>::Identity();
+    const Matrix<3, 2> K = gain<3, 2>(p.covariance.leftCols<2>(), S);
+    p.pose += K * nu;
+    p.pose(2) = wrap(p.pose(2));
+    p.covariance -= (K * S * K.transpose()).eval();
+    p.factor = root_along(p.pose(2), p.covariance);
+    return log_gaussian<2>(nu, S);
+  }
+
   void use_scan(const StepContext& context, std::uint32_t i, Scan scan) {
     Particle& p = particles_[i];
     weight_before_ = std::exp(p.log_weight);
     weigh_and_draw(context, i, p, scan);
+    p.log_weight += p.log_weight_of_fix;
     for (const Pairing& one : p.pairings) {
       if (one.kind != PairingKind::matched) p.log_weight += log_unmatched(setup_);
     }
@@ -203,6 +225,7 @@ class FastSlam : public SlamFilter {
 
   Resampling scheme_;
   ScanReport report_;
+  std::optional<PositionFix> fix_;              ///< fix for the next scan
   double weight_before_ = 0.0;                  ///< of the present particle, before the scan
   std::vector<MixtureInnovation> innovations_;  ///< {detection}
   std::vector<std::uint32_t> parents_;          ///< of the pending resampling

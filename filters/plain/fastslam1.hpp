@@ -26,7 +26,22 @@ class FastSlam1 : public FastSlam {
     Control u = control;
     for (std::size_t k = 0; k < controls_of(belief_.vehicle).size(); ++k)
       u[k] += sigma[k] * draw.normal();
-    p.pose = to_vector(move(as_pose(p.pose), u, duration, belief_.vehicle));
+    auto step = body_step(belief_.vehicle, u, duration);
+    if (!belief_.control.increment.is_none()) perturb(context, i, control, duration, step);
+    p.pose = to_vector(moved_by(as_pose(p.pose), step));
+  }
+
+  /// Adds the noise of the step, whose numbers follow those of the controls (EQUATIONS (1.11),
+  /// (1.12)).
+  void perturb(const StepContext& context, std::uint32_t i, const Control& control, double duration,
+               BodyStep<double>& step) const {
+    const IncrementNoise& noise = belief_.control.increment;
+    const std::size_t pairs = (controls_of(belief_.vehicle).size() + 1) / 2;
+    RngStream draw(context.identity(Draw::motion_sample, i), static_cast<std::uint32_t>(pairs));
+    std::array<double, 3> e{};
+    for (double& one : e) one = draw.normal();
+    const auto given = body_step(belief_.vehicle, control, duration);
+    step = perturbed(step, noise.model, increment_deviations(noise, given, duration), e);
   }
 
   /// Adds sum_k log N(z_k - h(x, mu_k); Hf Sigma_k Hf' + R), the second half of EQUATIONS (5.1).

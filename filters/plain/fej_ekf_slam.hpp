@@ -26,7 +26,8 @@ class FejEkfSlam : public EkfSlam {
   void predict(const StepContext& /*context*/, const Control& u, double duration) override {
     const auto step = linearised_move(pose(), u, duration, setup_.belief.vehicle);
     const ControlJacobian Fu = control_jacobian(step.jacobians);
-    const Matrix<3> noise = Fu * control_noise(setup_.belief, u) * Fu.transpose();
+    const Matrix<3> noise = Fu * control_noise(setup_.belief, u) * Fu.transpose() +
+                            increment_covariance(setup_.belief, mean_(2), u, duration);
     if (to_vector(step.pose) == mean_.head<3>() && noise.isZero(0.0)) return;
     if (is_updated_) shift_points();
     is_updated_ = false;

@@ -46,14 +46,36 @@ inline Eigen::MatrixXd control_noise(const Belief& belief, const Control& contro
   return Eigen::VectorXd::Map(sigma.data(), n).cwiseAbs2().asDiagonal();
 }
 
-/// (x, P) -> (f(x, u), Fx P Fx' + Fu Q Fu') (EQUATIONS (1.3), (1.4)).
+/// The columns of a square root of the covariance that the noise of a step adds to a pose with this
+/// heading, besides that of its controls (EQUATIONS (1.11), (1.12)).
+inline Matrix<3> increment_root(const Belief& belief, double heading, const Control& u,
+                                double duration) {
+  Matrix<3> root = Matrix<3>::Zero();
+  if (belief.control.increment.is_none()) return root;
+  const auto step = body_step(belief.vehicle, u, duration);
+  const auto columns = increment_columns(belief.control.increment, step, duration);
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    const auto& [forward, left, turn] = columns[static_cast<std::size_t>(k)];
+    root.col(k) << Eigen::Rotation2D<double>(heading) * Vector<2>(forward, left), turn;
+  }
+  return root;
+}
+inline Matrix<3> increment_covariance(const Belief& belief, double heading, const Control& u,
+                                      double duration) {
+  const Matrix<3> root = increment_root(belief, heading, u, duration);
+  return root * root.transpose();
+}
+
+/// (x, P) -> (f(x, u), Fx P Fx' + Fu Q Fu' + noise of the step) (EQUATIONS (1.3), (1.4)).
 inline void move_linearised(Vector<3>& x, Matrix<3>& P, const Control& u, double duration,
                             const Belief& belief) {
   const auto step = linearised_move(as_pose(x), u, duration, belief.vehicle);
   const Matrix<3> Fx = pose_jacobian(step.jacobians);
   const ControlJacobian Fu = control_jacobian(step.jacobians);
+  P = (Fx * P * Fx.transpose() + Fu * control_noise(belief, u) * Fu.transpose() +
+       increment_covariance(belief, x(2), u, duration))
+          .eval();
   x = to_vector(step.pose);
-  P = (Fx * P * Fx.transpose() + Fu * control_noise(belief, u) * Fu.transpose()).eval();
 }
 
 inline Vector<2> vector_of(const Detection& z) { return {z[0], z[1]}; }

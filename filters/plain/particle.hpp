@@ -23,7 +23,8 @@ struct Particle {
   Vector<3> refined_pose = Vector<3>::Zero();  ///< proposal of the last scan, before the draw
   Matrix<3> refined_covariance = Matrix<3>::Zero();
   double log_weight = 0.0;
-  std::uint32_t ancestor = 0;  ///< its index one scan ago
+  double log_weight_of_fix = 0.0;  ///< share of the fix of this scan
+  std::uint32_t ancestor = 0;      ///< its index one scan ago
   Map map;
   std::vector<Pairing> pairings;  ///< one for each detection of the scan
 };

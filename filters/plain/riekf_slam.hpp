@@ -24,14 +24,17 @@ class RiekfSlam final : public EkfSlam {
     P_ -= (P_.col(2) * Jp.transpose()).eval();
   }
 
-  /// xi changes by the noise alone, with the derivative B (EQUATIONS (15.17)).
+  /// xi changes by the noise of the pose alone, of which B is its derivative; B Fu is the B of
+  /// EQUATIONS (15.17).
   void predict(const StepContext& /*context*/, const Control& u, double duration) override {
     const auto step = linearised_move(pose(), u, duration, setup_.belief.vehicle);
     const ControlJacobian Fu = control_jacobian(step.jacobians);
+    const Matrix<3> noise = Fu * control_noise(setup_.belief, u) * Fu.transpose() +
+                            increment_covariance(setup_.belief, mean_(2), u, duration);
     mean_.head<3>() = to_vector(step.pose);
-    Eigen::MatrixXd B = -quarter_turned_points() * Fu.row(2);
-    B.topRows<3>() += Fu;
-    P_ += B * control_noise(setup_.belief, u) * B.transpose();
+    Eigen::MatrixXd B = -quarter_turned_points() * Vector<3>::UnitZ().transpose();
+    B.topRows<3>() += Matrix<3>::Identity();
+    P_ += B * noise * B.transpose();
   }
 
   /// T P T' of e = T xi, e_p = xi_p + J p xi_heading for every point p (EQUATIONS (15.3)).
@@ -48,6 +51,13 @@ class RiekfSlam final : public EkfSlam {
     auto v = EkfSlam::linearised(slot, z);
     if (v) v->Hx << -v->Hf, Vector<2>::Zero();
     return v;
+  }
+
+  /// e_p = xi_p + J p xi_heading, so that H also has the turn about the origin.
+  Matrix<2, Eigen::Dynamic> derivative_of_position() const override {
+    Matrix<2, Eigen::Dynamic> H = EkfSlam::derivative_of_position();
+    H.col(2) = quarter_turned(mean_.head<2>());
+    return H;
   }
 
   /// mean <- exp(xi) mean: p <- R(a) p + V xi_p with a = xi_heading (EQUATIONS (15.18)). V of

@@ -35,8 +35,11 @@ class Srcd : public FastSlam2 {
                                   control_noise(belief_, control).cwiseSqrt(), R_.cwiseSqrt()});
     const Differences image = central_differences(stacked(p.pose, {}, S.rows()), S, h_,
                                                   motion_model(control, duration, belief_.vehicle));
+    SmallMatrix root = tria_of({image.A, image.B});
+    if (!belief_.control.increment.is_none())
+      root = tria_of({root, increment_root(belief_, p.pose(2), control, duration)});
     p.pose = image.mean;
-    keep(p, tria_of({image.A, image.B}));
+    keep(p, root);
   }
 
   /// Ankishan (15) to (18), and the innovation of the weight (26) as EQUATIONS (8.1), (8.2).

@@ -29,8 +29,8 @@ class UFastSlam : public FastSlam2 {
                                   control_noise(belief_, control).cwiseSqrt(), R_.cwiseSqrt()});
     const Image image = unscented(stacked(p.pose, {}, S.rows()), S, augmented_,
                                   motion_model(control, duration, belief_.vehicle));
+    p.covariance = image.covariance + increment_covariance(belief_, p.pose(2), control, duration);
     p.pose = image.mean;
-    p.covariance = image.covariance;
   }
 
   /// Kim (8) to (12). The weight always includes the covariance of the landmark (EQUATIONS (7.1)).

@@ -28,7 +28,8 @@ class RelativeEkfSlam final : public SlamFilter {
                    length_deviation(setup.belief.sensor, setup.belief, 0.0)),
         lag_(setup.options.integer("lag")),
         association_(setup),
-        gaussian_(SensorNoise::of(setup.belief)),
+        sensor_(setup.belief),
+        gaussian_(sensor_),
         joined_(gaussian_),
         moved_(gaussian_) {}
 
@@ -89,7 +90,7 @@ class RelativeEkfSlam final : public SlamFilter {
   /// Associates by the estimates that are reported.
   void pair_nearest(Scan scan) {
     searches_.assign(scan.size(), {});
-    reported().expect_all([&](std::size_t landmark, const RangeBearing<double>& expected,
+    reported().expect_all([&](std::size_t landmark, const Eigen::Vector2d& expected,
                               const Eigen::Matrix2d& covariance) {
       const auto L = factor(covariance);
       if (!L) {
@@ -97,7 +98,7 @@ class RelativeEkfSlam final : public SlamFilter {
         return;
       }
       for (std::size_t k = 0; k < scan.size(); ++k) {
-        const Eigen::Vector2d innovation = to_vector(residual(observation_of(scan[k]), expected));
+        const Eigen::Vector2d innovation = sensor_.residual(vector_of(scan[k]), expected);
         const double distance = L->whiten(innovation).squaredNorm();
         searches_[k].offer(static_cast<std::uint32_t>(landmark), distance, distance + L->log_det(),
                            association_.settings().gate);
@@ -119,7 +120,7 @@ class RelativeEkfSlam final : public SlamFilter {
         continue;
       }
       (is_bent(pairing.landmark) ? duplicates_ : seen_)
-          .push_back({pairing.landmark, observation_of(scan[k])});
+          .push_back({pairing.landmark, vector_of(scan[k])});
     }
     const RelativeOutcome outcome = gaussian_.see(seen_, iterations_);
     if (outcome.is_faulty) ++report_.numerical_faults;
@@ -144,7 +145,7 @@ class RelativeEkfSlam final : public SlamFilter {
     for (std::size_t k = 0; k < scan.size(); ++k) {
       if (!is_fresh(association_.pairings()[k])) continue;
       association_.add(scan[k].identity);
-      gaussian_.add_landmark(observation_of(scan[k]));
+      gaussian_.add_landmark(vector_of(scan[k]));
     }
   }
   void merge_duplicates() {
@@ -184,6 +185,7 @@ class RelativeEkfSlam final : public SlamFilter {
   MapAssociation association_;
   MotionIncrement motion_;  ///< motion since the last scan
   bool is_at_scan_ = true;  ///< true if no motion followed the last scan
+  BelievedSensor sensor_;
   RelativeGaussian gaussian_;
   RelativeGaussian joined_;  ///< copy in which the landmarks that were initialised again are joined
   std::size_t waited_ = 0;   ///< [scans] time since a landmark was initialised again
@@ -222,7 +224,8 @@ FilterKind relative_ekf_slam_kind() {
                "iterations", "20", 0, 100,
                "number of times that a scan is linearised again at the updated estimate"),
            fitting_motion_option()},
-      .sensors = {RangeBearingSensor::kName},
+      .sensors = {RangeBearingSensor::kName, PositionSensor::kName},
+      .takes_mountings = true,
       .make = [](const FilterSetup& setup) { return std::make_unique<RelativeEkfSlam>(setup); }};
 }
 

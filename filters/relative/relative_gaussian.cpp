@@ -120,7 +120,7 @@ void RelativeGaussian::add_frame() {
   chain_.displacements.push_back(0);
 }
 
-void RelativeGaussian::add_landmark(const RangeBearing<double>& observed) {
+void RelativeGaussian::add_landmark(const Eigen::Vector2d& observed) {
   chain_.landmarks.push_back({add_point(observed), std::nullopt});
 }
 
@@ -128,26 +128,25 @@ void RelativeGaussian::add_duplicate(const Seen& seen) {
   chain_.landmarks[seen.landmark].again = add_point(seen.observed);
 }
 
-/// Adds a point in the newest frame. Range and bearing are its coordinates and therefore exactly
-/// Gaussian.
-ChainPoint RelativeGaussian::add_point(const RangeBearing<double>& observed) {
-  const bool is_polar = is_at_newest_frame();
+/// Adds a point in the newest frame. Range and bearing from that frame are its coordinates and
+/// therefore exactly Gaussian.
+ChainPoint RelativeGaussian::add_point(const Eigen::Vector2d& observed) {
+  const bool is_polar = is_at_newest_frame() && sensor_.is_polar();
   const Eigen::Index row = add_rows(2);
-  const Eigen::Vector2d variances(noise_.first, noise_.second);
   const ChainPoint point{row, chain_.newest_frame(), is_polar};
   if (is_polar) {
-    mean_.segment<2>(row) << observed.range, observed.bearing;
-    P_.block<2, 2>(row, row) = variances.asDiagonal();
+    mean_.segment<2>(row) = observed;
+    P_.block<2, 2>(row, row) = sensor_.variances().asDiagonal();
     return point;
   }
-  const auto place = linearised_place(Pose{mean_(0), mean_(1), mean_(2)}, observed);
-  const Matrix23 G = pose_jacobian(place);
-  const Eigen::Matrix2d Gz = observation_jacobian(place);
-  mean_.segment<2>(row) = to_vector(place.point);
+  const auto place = sensor_.placed(Pose{mean_(0), mean_(1), mean_(2)}, observed);
+  const Matrix23& G = place.by_pose;
+  const Eigen::Matrix2d& Gz = place.by_detection;
+  mean_.segment<2>(row) = place.point;
   P_.middleCols<2>(row) = P_.leftCols<3>().lazyProduct(G.transpose());
   P_.middleRows<2>(row) = P_.middleCols<2>(row).transpose();
-  P_.block<2, 2>(row, row) =
-      G * P_.topLeftCorner<3, 3>() * G.transpose() + Gz * variances.asDiagonal() * Gz.transpose();
+  P_.block<2, 2>(row, row) = G * P_.topLeftCorner<3, 3>() * G.transpose() +
+                             Gz * sensor_.variances().asDiagonal() * Gz.transpose();
   P_(row, row + 1) = P_(row + 1, row);
   return point;
 }
@@ -221,15 +220,14 @@ RelativeOutcome RelativeGaussian::see(std::span<const Seen> scan, int iterations
   for (const Seen& seen : scan) {
     const ChainPoint& p = point(seen.landmark);
     const LinearisedPoint at = linearised_point(p, mean_);
-    if (!too_near(predicted_observation(now.in(p.frame), at.place))) used.push_back(seen);
+    if (sensor_.linearised(now.in(p.frame), at.place)) used.push_back(seen);
   }
   if (used.empty()) return {};
-  const Eigen::Vector2d variances(noise_.first, noise_.second);
   const RelativeMeasurement measurement{
       .oldest_frame = oldest,
       .linearise = [&](const Eigen::VectorXd& mean, const VehicleInFrames& vehicle,
                        LinearisedPairs& pairs) { return linearise(used, mean, vehicle, pairs); },
-      .variances = variances.replicate(static_cast<Eigen::Index>(used.size()), 1)};
+      .variances = sensor_.variances().replicate(static_cast<Eigen::Index>(used.size()), 1)};
   return condition(chain_, measurement, iterations, scratch_.conditioning, mean_, P_);
 }
 
@@ -241,11 +239,11 @@ bool RelativeGaussian::linearise(std::span<const Seen> scan, const Eigen::Vector
   for (const Seen& seen : scan) {
     const ChainPoint& p = point(seen.landmark);
     const LinearisedPoint at = linearised_point(p, mean);
-    const auto expected = linearised_observation(vehicle.in(p.frame), at.place);
-    if (too_near(expected.observation)) return false;
-    pairs.residual.segment<2>(2 * pair) = to_vector(residual(seen.observed, expected.observation));
-    pairs.parts.push_back({pair++, p.frame, p.row, pose_jacobian(expected),
-                           landmark_jacobian(expected) * at.by_coordinates});
+    const auto expected = sensor_.linearised(vehicle.in(p.frame), at.place);
+    if (!expected) return false;
+    pairs.residual.segment<2>(2 * pair) = sensor_.residual(seen.observed, expected->value);
+    pairs.parts.push_back(
+        {pair++, p.frame, p.row, expected->by_pose, expected->by_landmark * at.by_coordinates});
   }
   sort_parts(pairs);
   return true;
@@ -305,15 +303,15 @@ void RelativeGaussian::expect_one(std::size_t landmark, const VehicleGaussian& v
                                   const Expect& expect) const {
   const ChainPoint& p = point(landmark);
   const LinearisedPoint at = linearised_point(p, mean_);
-  const auto seen = linearised_observation(vehicle.pose, at.place);
-  if (too_near(seen.observation)) return;
-  const Matrix23 Hx = pose_jacobian(seen);
-  const Eigen::Matrix2d Hl = landmark_jacobian(seen) * at.by_coordinates;
+  const auto seen = sensor_.linearised(vehicle.pose, at.place);
+  if (!seen) return;
+  const Matrix23& Hx = seen->by_pose;
+  const Eigen::Matrix2d Hl = seen->by_landmark * at.by_coordinates;
   const Eigen::Matrix2d mixed = Hl * vehicle.with_all.middleRows<2>(p.row) * Hx.transpose();
   Eigen::Matrix2d S = Hx * vehicle.covariance * Hx.transpose() + mixed + mixed.transpose() +
                       Hl * P_.block<2, 2>(p.row, p.row) * Hl.transpose();
-  S.diagonal() += Eigen::Vector2d(noise_.first, noise_.second);
-  expect(landmark, seen.observation, S);
+  S.diagonal() += sensor_.variances();
+  expect(landmark, seen->value, S);
 }
 
 }  // namespace montecarta::filters

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "filters/moments/evidence.hpp"
+#include "filters/moments/believed_sensor.hpp"
 #include "filters/moments/motion_increment.hpp"
 #include "filters/relative/relative_conditioning.hpp"
 
@@ -21,10 +21,10 @@ class RelativeGaussian {
   /// A detection of a landmark.
   struct Seen {
     std::size_t landmark;
-    RangeBearing<double> observed;
+    Eigen::Vector2d observed;  ///< components of the detection
   };
 
-  explicit RelativeGaussian(const SensorNoise& noise) : noise_(noise) {}
+  explicit RelativeGaussian(const BelievedSensor& sensor) : sensor_(sensor) {}
 
   void start(const Pose& start);
   void move(const MotionIncrement& motion);
@@ -37,7 +37,7 @@ class RelativeGaussian {
   /// Drops the frame without landmarks that costs least; false if all frames have landmarks.
   bool drop_empty_frame();
   /// Adds a landmark, in the newest frame.
-  void add_landmark(const RangeBearing<double>& observed);
+  void add_landmark(const Eigen::Vector2d& observed);
   /// Initialises a landmark a second time, without use of its first coordinates.
   void add_duplicate(const Seen& seen);
   /// Conditions on the equality of both positions of all landmarks that were initialised again.
@@ -56,7 +56,7 @@ class RelativeGaussian {
   /// Writes {frame} [m] how far uncertain headings bend the path to each frame (EQUATIONS (22.4)).
   void bends(std::vector<double>& bends) const;
   using Expect =
-      std::function<void(std::size_t landmark, const RangeBearing<double>& expected,
+      std::function<void(std::size_t landmark, const Eigen::Vector2d& expected,
                          const Eigen::Matrix2d& covariance)>;  ///< covariance of the innovation
   /// Calls `expect` for all landmarks except those too near for a derivative.
   void expect_all(const Expect& expect) const;
@@ -78,12 +78,12 @@ class RelativeGaussian {
   bool linearise(std::span<const Seen> scan, const Eigen::VectorXd& mean,
                  const VehicleInFrames& vehicle, LinearisedPairs& pairs) const;
   void expect_one(std::size_t landmark, const VehicleGaussian& vehicle, const Expect& expect) const;
-  RelativeChain::Point add_point(const RangeBearing<double>& observed);
+  RelativeChain::Point add_point(const Eigen::Vector2d& observed);
   Eigen::Index add_rows(Eigen::Index count);
   void drop_frame(std::size_t frame);
   void keep_rows();
 
-  SensorNoise noise_;
+  BelievedSensor sensor_;
   RelativeChain chain_;
   Eigen::Index rows_ = 0;  ///< number of used rows; the others are zero
   Eigen::VectorXd mean_;

@@ -25,10 +25,12 @@ struct FilterKind {
   std::vector<Parameter> options;  ///< options in the order of the documentation
   /// Sensors that it supports, mounted at the pose; empty means all sensors, mounted anywhere.
   std::vector<std::string> sensors = {RangeBearingSensor::kName};
+  bool takes_mountings = false;  ///< true if its listed sensors may be mounted anywhere, too
   /// True if it initialises landmarks that one detection does not fix. It then needs known
   /// association.
   bool delays_initialisation = false;
   bool takes_prior = false;  ///< true if it can be started from a Prior, with a known map
+  bool takes_fixes = false;  ///< true if it uses fixes of the position (take_fix())
   /// Removes from the capabilities those that the filter does not have with this setup; empty: it
   /// has all.
   std::function<void(const FilterSetup&, Capabilities&)> restrict_reports = {};

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -44,6 +45,8 @@ struct Belief {
   double sigma_forward = 0.1;  ///< [m] standard deviation of a position, forward of the sensor
   double sigma_left = 0.1;     ///< [m] standard deviation of a position, left of the sensor
   Sensor sensor = {};          ///< its components determine which of the four above are used
+  /// [m] standard deviation of a fix of the position, in x and in y; nullopt if there are none.
+  std::optional<double> sigma_fix = {};
 };
 
 enum class Association { known, nearest };

@@ -40,7 +40,7 @@ void add_rows(const Segment& segment, const Segment::Rows& own, Segment::Rows& a
 }  // namespace
 
 void Segment::linearise(const FactorGraph& graph, const GraphEstimate& estimate, std::size_t begin,
-                        std::size_t end, const SensorNoise& noise, SegmentScratch& scratch) {
+                        std::size_t end, const BelievedSensor& sensor, SegmentScratch& scratch) {
   begin_ = begin;
   end_ = end;
   start(graph, scratch);
@@ -49,7 +49,7 @@ void Segment::linearise(const FactorGraph& graph, const GraphEstimate& estimate,
     const Pose& pose = estimate.poses[t];
     carry(graph.motion(t), before, pose, estimate.directions[t]);
     for (const FactorGraph::Observation& observation : graph.observations_of(t)) {
-      condition(observation, pose, estimate.landmarks[observation.landmark], noise, scratch);
+      condition(observation, pose, estimate.landmarks[observation.landmark], sensor, scratch);
     }
     before = pose;
   }
@@ -103,20 +103,20 @@ void Segment::carry(const MotionIncrement& motion, const Pose& before, const Pos
   motions_.push_back(linear);
 }
 
-/// An observation of a landmark too near for a bearing is left out of this linearisation.
+/// An observation of a landmark too near for a derivative is left out of this linearisation.
 void Segment::condition(const FactorGraph::Observation& observation, const Pose& pose,
-                        const Point& landmark, const SensorNoise& noise, SegmentScratch& scratch) {
-  const auto at = linearised_observation(pose, landmark);
+                        const Point& landmark, const BelievedSensor& sensor,
+                        SegmentScratch& scratch) {
   LinearObservation seen{Matrix23::Zero(), Eigen::Matrix2d::Zero(), Eigen::Vector2d::Zero(),
                          Matrix32::Zero(), Eigen::Vector2d::Zero()};
-  if (!too_near(at.observation)) {
-    const Matrix23 H = pose_jacobian(at);
+  if (const auto at = sensor.linearised(pose, landmark)) {
+    const Matrix23& H = at->by_pose;
     Eigen::Matrix2d S = H * covariance_ * H.transpose();
-    S.diagonal() += Eigen::Vector2d(noise.first, noise.second);
+    S.diagonal() += sensor.variances();
     if (const auto L = factor(S)) {
       seen.pose = whitened(*L, H);
-      seen.landmark = whitened(*L, landmark_jacobian(at));
-      seen.residual = L->whiten(to_vector(residual(observation.observed, at.observation)));
+      seen.landmark = whitened(*L, at->by_landmark);
+      seen.residual = L->whiten(sensor.residual(observation.observed, at->value));
       seen.gain = covariance_ * seen.pose.transpose();
     }
   }
@@ -213,7 +213,7 @@ bool Elimination::linearise(const FactorGraph& graph, const GraphEstimate& estim
   std::size_t first = 0;
   for (Link& link : links()) {
     const std::size_t end = std::min(first + kSegment, graph.poses());
-    link.segment.linearise(graph, estimate, first, end, noise_, scratch_);
+    link.segment.linearise(graph, estimate, first, end, sensor_, scratch_);
     join(link);
     first = end;
   }

@@ -4,6 +4,7 @@
 #include "filters/joint/map_moments.hpp"
 #include "filters/joint/products.hpp"
 #include "filters/models/eigen_jacobians.hpp"
+#include "filters/moments/believed_sensor.hpp"
 #include "filters/smoothing/factor_graph.hpp"
 
 #include <Eigen/Core>
@@ -43,7 +44,7 @@ class Segment {
   /// Linearises the poses from `begin` to before `end`. Afterwards scratch.information is that of
   /// this segment, in its lower triangle.
   void linearise(const FactorGraph& graph, const GraphEstimate& estimate, std::size_t begin,
-                 std::size_t end, const SensorNoise& noise, SegmentScratch& scratch);
+                 std::size_t end, const BelievedSensor& sensor, SegmentScratch& scratch);
   std::size_t last_pose() const { return end_ - 1; }
   /// The landmarks that it observes, in the order of their rows.
   std::span<const std::uint32_t> landmarks() const { return landmarks_; }
@@ -82,7 +83,7 @@ class Segment {
   void carry(const MotionIncrement& motion, const Pose& before, const Pose& after,
              const Direction<double>& heading);
   void condition(const FactorGraph::Observation& observation, const Pose& pose,
-                 const Point& landmark, const SensorNoise& noise, SegmentScratch& scratch);
+                 const Point& landmark, const BelievedSensor& sensor, SegmentScratch& scratch);
   void add_rows(const LinearObservation& seen, Eigen::Index row, SegmentScratch& scratch);
   double filter_poses(const FactorGraph& graph, const Eigen::VectorXd& landmark_steps,
                       Eigen::Vector3d x);
@@ -104,7 +105,7 @@ class Segment {
 /// pose is last and remains together with the landmarks.
 class Elimination {
  public:
-  explicit Elimination(const SensorNoise& noise) : noise_(noise) {}
+  explicit Elimination(const BelievedSensor& sensor) : sensor_(sensor) {}
 
   /// Linearises at `estimate`; returns false if landmarks are not determined.
   [[nodiscard]] bool linearise(const FactorGraph& graph, const GraphEstimate& estimate);
@@ -143,7 +144,7 @@ class Elimination {
   void place_landmarks(const FactorGraph& graph, const GraphEstimate& estimate,
                        GraphMinimum& minimum);
 
-  SensorNoise noise_;
+  BelievedSensor sensor_;
   std::vector<Link> links_;  ///< links of this linearisation, then unused ones
   std::size_t n_links_ = 0;  ///< number of links of this linearisation
   SegmentScratch scratch_;

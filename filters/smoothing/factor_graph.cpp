@@ -16,7 +16,7 @@ void FactorGraph::add_pose(const MotionIncrement& motion) {
   begin_.push_back(observations_.size());
 }
 
-void FactorGraph::add_observation(std::uint32_t landmark, const RangeBearing<double>& observed) {
+void FactorGraph::add_observation(std::uint32_t landmark, const Eigen::Vector2d& observed) {
   if (landmark == first_pose_.size()) first_pose_.push_back(poses() - 1);
   observations_.push_back({landmark, observed});
   begin_.back() = observations_.size();

@@ -14,7 +14,8 @@
 
 namespace montecarta::filters {
 
-/// All measurements (EQUATIONS 21): one motion factor and the range-bearing factors of each scan.
+/// All measurements (EQUATIONS 21): one motion factor and the factors of the detections of each
+/// scan.
 /// Pose t is that of scan t; the known start is not among them. Landmarks are numbered in the order
 /// of initialisation.
 class FactorGraph {
@@ -22,14 +23,14 @@ class FactorGraph {
   /// An observation of a landmark from a pose.
   struct Observation {
     std::uint32_t landmark;
-    RangeBearing<double> observed;
+    Eigen::Vector2d observed;  ///< components of the detection
   };
 
   void start(const Pose& start);
   /// Adds a pose after the given motion from the pose before.
   void add_pose(const MotionIncrement& motion);
   /// Adds an observation from the newest pose. A new landmark must have the next number.
-  void add_observation(std::uint32_t landmark, const RangeBearing<double>& observed);
+  void add_observation(std::uint32_t landmark, const Eigen::Vector2d& observed);
 
   std::size_t poses() const { return motions_.size(); }
   std::size_t landmarks() const { return first_pose_.size(); }

@@ -51,10 +51,10 @@ double GaussNewton::squares(const FactorGraph& graph, const GraphEstimate& estim
     const Eigen::Vector3d& m = estimate.multipliers[t];
     sum += m.dot(symmetric(graph.motion(t).covariance()) * m);
     for (const auto& [landmark, observed] : graph.observations_of(t)) {
-      const auto expected = predicted_observation(estimate.poses[t], estimate.landmarks[landmark]);
-      if (too_near(expected)) continue;
-      const auto [range, bearing] = residual(observed, expected);
-      sum += range * range / noise_.first + bearing * bearing / noise_.second;
+      const auto expected = sensor_.linearised(estimate.poses[t], estimate.landmarks[landmark]);
+      if (!expected) continue;
+      const Eigen::Vector2d off = sensor_.residual(observed, expected->value);
+      sum += off(0) * off(0) / sensor_.variances()(0) + off(1) * off(1) / sensor_.variances()(1);
     }
   }
   return sum;
@@ -107,7 +107,7 @@ class Smoother final : public SlamFilter {
         share_(setup.options.number("relinearise")),
         belief_(setup, Retraction::invariant, static_cast<int>(setup.options.integer("iterations")),
                 moments_),
-        solver_(SensorNoise::of(setup.belief)) {}
+        solver_(BelievedSensor(setup.belief)) {}
 
   void start(const Pose& start) override {
     belief_.start({.pose = {start}});
@@ -157,13 +157,13 @@ class Smoother final : public SlamFilter {
     estimate_.add_pose(graph_, belief_.gaussian().pose().mean);
     for (const JointBelief::UsedDetection& used : belief_.used_detections()) {
       const std::uint32_t landmark = belief_.association().pairings()[used.detection].landmark;
-      graph_.add_observation(landmark, observation_of(scan[used.detection]));
+      graph_.add_observation(landmark, vector_of(scan[used.detection]));
     }
     for (std::size_t k = 0; k < scan.size(); ++k) {
       if (belief_.association().pairings()[k].kind != PairingKind::fresh) continue;
       const std::size_t landmark = graph_.landmarks();
       const Eigen::Vector2d place = belief_.gaussian().landmark(landmark).mean;
-      graph_.add_observation(static_cast<std::uint32_t>(landmark), observation_of(scan[k]));
+      graph_.add_observation(static_cast<std::uint32_t>(landmark), vector_of(scan[k]));
       estimate_.add_landmark({place.x(), place.y()});
       linearised_at_.push_back(place);
     }
@@ -219,7 +219,7 @@ class Smoother final : public SlamFilter {
   /// Moments of the newest pose and the landmarks, in the order of the graph.
   std::optional<JointEstimate> solved_joint() const {
     GraphEstimate solved = estimate_;
-    GaussNewton solver(SensorNoise::of(model_));
+    GaussNewton solver{BelievedSensor(model_)};
     if (!solver.solve(graph_, kTolerance, solved)) return std::nullopt;
     return RelativeLaplace().of(graph_, solved, solver.elimination());
   }
@@ -255,7 +255,8 @@ FilterKind smoother_kind() {
                       "iterations", "5", 0, 100,
                       "number of times that a detection is linearised again between two solutions"),
                   fitting_motion_option(), moments_option("pushed")},
-      .sensors = {RangeBearingSensor::kName},
+      .sensors = {RangeBearingSensor::kName, PositionSensor::kName},
+      .takes_mountings = true,
       .make = [](const FilterSetup& setup) { return std::make_unique<Smoother>(setup); }};
 }
 

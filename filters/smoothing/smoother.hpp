@@ -10,7 +10,7 @@ namespace montecarta::filters {
 /// relative coordinates. A step is halved as long as the sum of squares rises.
 class GaussNewton {
  public:
-  explicit GaussNewton(const SensorNoise& noise) : noise_(noise), elimination_(noise) {}
+  explicit GaussNewton(const BelievedSensor& sensor) : sensor_(sensor), elimination_(sensor) {}
 
   /// Moves `estimate` to the least sum of squares, in at most 20 steps. It ends after a step that
   /// was predicted to lower the sum by less than `tolerance`, the square of a step in standard
@@ -25,7 +25,7 @@ class GaussNewton {
   void move(double share, GraphEstimate& estimate) const;
   double take_step(const FactorGraph& graph, double before, GraphEstimate& estimate);
 
-  SensorNoise noise_;
+  BelievedSensor sensor_;
   Elimination elimination_;
   GraphMinimum minimum_;
   GraphEstimate given_, tried_;  ///< scratch

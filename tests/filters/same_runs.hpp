@@ -60,7 +60,7 @@ inline void expect_same_steps(SlamFilter& one, SlamFilter& other, const SmallWor
     }
     expect_near(one.estimate(), other.estimate(), tolerance);
     if (world.itinerary.scan_step[scan] != step) continue;
-    for (SlamFilter* filter : {&one, &other}) filter->update(context, world.drive.scan(scan));
+    for (SlamFilter* filter : {&one, &other}) update_with_scan(*filter, context, world, scan);
     ++scan;
   }
 }

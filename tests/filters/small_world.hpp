@@ -10,6 +10,7 @@
 #include "filters/models/range_bearing.hpp"
 #include "filters/setup/filter_setup.hpp"
 
+#include <array>
 #include <cmath>
 #include <concepts>
 #include <functional>
@@ -112,6 +113,20 @@ inline void look_around(const SmallWorldSettings& settings, std::uint32_t step, 
   world.drive.scan_begin.push_back(static_cast<std::uint32_t>(world.drive.detections.size()));
 }
 
+/// The step of a vehicle that is driven by `driven` instead of `control`, with the noise of a step.
+inline BodyStep<double> noisy_step(const SmallWorldSettings& settings, std::uint32_t step,
+                                   const Control& control, const Control& driven) {
+  const Vehicle& vehicle = settings.noise.vehicle;
+  const BodyStep<double> moved = body_step(vehicle, driven, 0.025);
+  const IncrementNoise& noise = settings.noise.control.increment;
+  if (noise.is_none()) return moved;
+  RngStream draw({settings.seed, 0, step, 0, Draw::world_increment});
+  std::array<double, 3> e{};
+  for (double& one : e) one = draw.normal();
+  return perturbed(moved, noise.model,
+                   increment_deviations(noise, body_step(vehicle, control, 0.025), 0.025), e);
+}
+
 inline SmallWorld small_world(const SmallWorldSettings& settings) {
   SmallWorld world{.itinerary = {}, .drive = {}, .seed = settings.seed};
   place_landmarks(settings, world);
@@ -127,7 +142,7 @@ inline SmallWorld small_world(const SmallWorldSettings& settings) {
     for (std::size_t i = 0; i < n_controls; ++i) {
       driven[i] += settings.noise.control.sigma[i] * draw.normal();
     }
-    truth = move(truth, driven, 0.025, settings.noise.vehicle);
+    truth = moved_by(truth, noisy_step(settings, step, control, driven));
     world.itinerary.step_time.push_back(0.025 * (step + 1));
     world.drive.controls.push_back(control);
     world.drive.truth.push_back(truth);
@@ -159,6 +174,19 @@ inline SmallWorld in_known_map(SmallWorld world, const PriorDeviations& deviatio
   return world;
 }
 
+/// The same drive with a fix of the position, with the deviation of `belief`, at every n-th scan.
+inline SmallWorld with_fixes(SmallWorld world, const Belief& belief, std::size_t every = 1) {
+  world.drive.fixes.resize(world.itinerary.scans());
+  for (std::size_t s = every - 1; s < world.itinerary.scans(); s += every) {
+    const std::uint32_t step = world.itinerary.scan_step[s];
+    RngStream draw({world.seed, 0, step, 0, Draw::world_fix});
+    const double x = draw.normal(), y = draw.normal(), sigma = belief.sigma_fix.value();
+    const Pose& truth = world.drive.truth[step];
+    world.drive.fixes[s] = PositionFix(truth.x + sigma * x, truth.y + sigma * y);
+  }
+  return world;
+}
+
 /// `pose` in a world that is turned about the origin by the heading of `start` and shifted to it.
 inline Pose turned(const Pose& pose, const Pose& start) {
   const Direction<double> turn = direction_of(start.heading);
@@ -184,6 +212,11 @@ inline SmallWorld turned(const SmallWorld& world, const Pose& start) {
     const Pose place = turned(Pose{f.x(), f.y(), 0.0}, start);
     f = {place.x, place.y};
   }
+  for (std::optional<PositionFix>& fix : other.drive.fixes) {
+    if (!fix) continue;
+    const Pose place = turned(Pose{fix->x(), fix->y(), 0.0}, start);
+    fix = PositionFix(place.x, place.y);
+  }
   other.itinerary.start = start;
   if (world.drive.prior) other.drive.prior = turned(*world.drive.prior, start);
   return other;
@@ -200,6 +233,16 @@ void start_in(const SmallWorld& world, const Pose& start, Filter& filter,
   filter.start(start);
 }
 
+/// Updates `filter` with the fix and the scan of this number, as the engine does.
+template <class Filter>
+void update_with_scan(Filter& filter, const StepContext& context, const SmallWorld& world,
+                      std::size_t scan) {
+  if constexpr (std::derived_from<Filter, SlamFilter>) {
+    if (const auto fix = world.drive.fix(scan)) filter.take_fix(*fix);
+  }
+  filter.update(context, world.drive.scan(scan));
+}
+
 /// Drives `filter` through the world as the engine does; calls after_scan(scan number) behind every
 /// update.
 template <class Filter, class AfterScan>
@@ -211,7 +254,7 @@ void drive_through(Filter& filter, const SmallWorld& world, const Pose& start,
     const StepContext context(world.seed, 0, static_cast<std::uint32_t>(step), parallel);
     filter.predict(context, world.drive.controls[step], world.itinerary.duration(step));
     if (scan == world.itinerary.scans() || world.itinerary.scan_step[scan] != step) continue;
-    filter.update(context, world.drive.scan(scan));
+    update_with_scan(filter, context, world, scan);
     after_scan(scan++);
   }
 }

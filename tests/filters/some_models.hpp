@@ -74,4 +74,10 @@ inline std::vector<SomeVehicle> some_vehicles() {
        {0.3, 0.2, 0.05}}};
 }
 
+/// Noise of the step by every model, as a robot has.
+inline std::vector<IncrementNoise> some_increments() {
+  return {{.model = IncrementModel::additive, .sigma = {0.05, 0.03, 0.02}},
+          {.model = IncrementModel::odometry, .alpha = {0.05, 0.01, 0.02, 0.03}}};
+}
+
 }  // namespace montecarta::models

@@ -10,6 +10,7 @@
 #include "tests/doubles/same_results.hpp"
 #include "tests/experiments/commands/program.hpp"
 
+#include <array>
 #include <cmath>
 
 namespace montecarta::experiments {
@@ -88,6 +89,76 @@ class Yard : public Program {
     return study.cells.at(cell).get<ReferenceAnalyses>().at(0).runs.at(0);
   }
 };
+
+/// Three surveyed landmarks, and a start that is half a metre off.
+class SurveyedYard : public Yard {
+ protected:
+  SurveyedYard() {
+    write("yard/landmarks.csv", "x_m,y_m\n5,0\n-4,3\n1,-5\n");
+    write("yard/start.csv", "time_s,x_m,y_m,heading_rad\n0,0.4,-0.3,0\n");
+    write_scans(true);
+    study(
+        "cell = ekf_slam\ncell = riekf_slam\ncell = ukf_slam\n"
+        "cell = fastslam1 particles=500\ncell = fastslam2 particles=100\n");
+  }
+  void write_scans(bool has_identities) const {
+    constexpr std::array<std::array<double, 2>, 3> kPlaces = {{{5, 0}, {-4, 3}, {1, -5}}};
+    std::string text =
+        has_identities ? "time_s,range_m,bearing_rad,identity\n" : "time_s,range_m,bearing_rad\n";
+    for (int k = 1; k <= 120; ++k) {
+      const double heading = 0.1 * k;
+      for (std::size_t l = 0; l < kPlaces.size(); ++l) {
+        const double x = kPlaces[l][0] - 1.5 * std::sin(heading);
+        const double y = kPlaces[l][1] - 1.5 + 1.5 * std::cos(heading);
+        text += std::to_string(0.5 * k) + "," + std::to_string(std::hypot(x, y)) + "," +
+                std::to_string(std::remainder(std::atan2(y, x) - heading, kTwoPi));
+        text += has_identities ? "," + std::to_string(l) + "\n" : "\n";
+      }
+    }
+    write("yard/detections.csv", text);
+  }
+  static std::vector<std::string> known(const std::vector<std::string>& more = {}) {
+    std::vector<std::string> words{"--set", "belief.map=known", "--set",
+                                   "belief.start_sigma_m=0.5"};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+};
+
+TEST_F(SurveyedYard, IsWhereFiltersFindTheVehicleThatAreGivenTheMap) {
+  const StudyAnalysis given = analysed(known());
+  const StudyAnalysis built = analysed();
+  for (std::size_t c = 0; c < given.cells.size(); ++c) {
+    SCOPED_TRACE(given.cells[c].label);
+    EXPECT_LT(scores_of(given, c).rms, 0.1);
+    EXPECT_GT(scores_of(built, c).rms, 0.4) << "the map that it builds begins at a wrong start";
+  }
+}
+
+TEST_F(SurveyedYard, NeedsNoIdentities) {
+  write_scans(false);
+  const StudyAnalysis given = analysed(known());
+  for (std::size_t c = 0; c < given.cells.size(); ++c)
+    EXPECT_LT(scores_of(given, c).rms, 0.1) << given.cells[c].label;
+}
+
+TEST_F(SurveyedYard, MayHaveBeenSurveyedRoughly) {
+  write("yard/landmarks.csv", "x_m,y_m\n5.2,0.1\n-4.1,3.2\n0.9,-5.2\n");
+  const StudyAnalysis sure = analysed(known()),
+                      rough = analysed(known({"--set", "belief.map_sigma_m=0.2"}));
+  EXPECT_LT(scores_of(rough).rms, 0.3);
+  const auto ratio = [](const StudyAnalysis& study) {
+    return study.cells[0].get<DriveConsistencies>().at(0).mean.leads().mean;
+  };
+  EXPECT_LT(ratio(rough), 0.5 * ratio(sure)) << "its covariance holds the errors of the survey";
+}
+
+TEST_F(SurveyedYard, IsRefusedWithoutItsSurvey) {
+  std::filesystem::remove(folder_ / "yard/landmarks.csv");
+  const Called called = call_with({"run", "yard.ini", "-o", "out.h5", "--quiet"}, known());
+  EXPECT_NE(called.code, 0);
+  EXPECT_THAT(called.err, HasSubstr("this drive has no landmarks.csv"));
+}
 
 // Half a turn lies between scans: a straight line between them is no estimate of the filter.
 TEST_F(Yard, NoNumberCountsWhatLiesInAGapBetweenScans) {

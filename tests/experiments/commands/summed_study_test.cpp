@@ -103,6 +103,19 @@ TEST_F(SlowSummedStudy, SaysTheSameAsOneWithAllRows) {
   }
 }
 
+TEST_F(SlowSummedStudy, JudgesTheScansOfOneWithAllRows) {
+  const std::vector<std::string> from{"--set", "study.judge_from=2"};
+  const auto verdict_in = [&](const std::string& name, std::vector<std::string> more) {
+    more.insert(more.end(), from.begin(), from.end());
+    EXPECT_EQ(run(name, more).code, 0);
+    const Called analysed = call({"analyze", name});
+    return analysed.out.substr(0, analysed.out.find("CPU/run"));
+  };
+  const std::string sums = verdict_in("sums.h5", {});
+  EXPECT_THAT(sums, testing::HasSubstr("judged from 2 s on"));
+  EXPECT_EQ(sums, verdict_in("rows.h5", {"--set", "record.columns=pose,covariance,ancestry"}));
+}
+
 TEST_F(SlowSummedStudy, HasTheSameBitsHoweverItIsRun) {
   ASSERT_EQ(run("one.h5", {"--threads", "1"}).code, 0);
   const auto wanted = words_of("one.h5");

@@ -61,7 +61,7 @@ TEST(VehicleStudy, WhatIsOfAnotherVehicleOrNoiseIsRefused) {
   EXPECT_THAT(complaint(kRobot, {"belief.sigma_steer_deg=2"}),
               HasSubstr("sigma_steer_deg does not apply to belief.vehicle = differential_drive"));
   EXPECT_THAT(complaint(kRobot, {"scenario.noise=measured-control", "scenario.pilot=open_loop"}),
-              HasSubstr("pilot does not apply to scenario.noise = measured-control"));
+              HasSubstr("pilot = open_loop with noise = measured-control"));
   EXPECT_THAT(resolved_text(parsed(kRobot, {"scenario.noise=matched", "scenario.pilot=open_loop"})),
               HasSubstr("pilot = open_loop\n"));
 }

@@ -3,6 +3,7 @@
 #include "filters/fastslam/motion_sampling.hpp"
 #include "filters/fastslam/sigma_filters.hpp"
 #include "tests/filters/fastslam/filter_comparison.hpp"
+#include "tests/filters/some_models.hpp"
 
 namespace montecarta::filters {
 namespace {
@@ -26,6 +27,34 @@ TEST_P(FastSlams, EqualsThePlainFilterInAKnownMap) {
     const SmallWorld world = in_known_map(small_world(settings),
                                           {.position = 0.2, .heading = 0.05, .landmark = landmark});
     expect_same_run(*lanes, *plain, world, 1e-8);
+  }
+}
+
+/// Removes the detections of a scan, so that its fix comes alone.
+void leave_alone(std::size_t scan, Drive& drive) {
+  const std::uint32_t first = drive.scan_begin[scan], next = drive.scan_begin[scan + 1];
+  drive.detections.erase(drive.detections.begin() + first, drive.detections.begin() + next);
+  for (std::size_t s = scan + 1; s < drive.scan_begin.size(); ++s)
+    drive.scan_begin[s] -= next - first;
+}
+
+TEST_P(FastSlams, EqualsThePlainFilterWithFixes) {
+  SmallWorldSettings settings;
+  settings.noise.sigma_fix = 0.2;
+  const auto lanes = make_production(GetParam(), settings);
+  const auto plain = make_plain(GetParam(), settings);
+  SmallWorld world = with_fixes(small_world(settings), settings.noise, 2);
+  leave_alone(3, world.drive);
+  expect_same_run(*lanes, *plain, world, 1e-8);
+}
+
+TEST_P(FastSlams, EqualsThePlainFilterWithNoiseOfTheStep) {
+  for (const IncrementNoise& increment : some_increments()) {
+    SmallWorldSettings settings{.scans = 20};
+    settings.noise.control.increment = increment;
+    const auto lanes = make_production(GetParam(), settings);
+    const auto plain = make_plain(GetParam(), settings);
+    expect_same_run(*lanes, *plain, small_world(settings), 1e-8);
   }
 }
 

@@ -46,8 +46,16 @@ class KalmanFilter {
     for (Eigen::Index i = 0; i < 2; ++i) {
       const auto component = static_cast<std::size_t>(i);
       mean(i) += kStraight[component] * kStep;
-      covariance(i, i) += std::pow(belief.control.sigma[component] * kStep, 2);
+      covariance(i, i) += std::pow(belief.control.sigma[component] * kStep, 2) +
+                          std::pow(belief.control.increment.sigma[component], 2) * kStep;
     }
+  }
+  void fix(const PositionFix& fix, double sigma) {
+    const Eigen::Matrix2d S =
+        covariance.topLeftCorner<2, 2>() + sigma * sigma * Eigen::Matrix2d::Identity();
+    const Eigen::MatrixXd K = S.llt().solve(covariance.topRows<2>()).transpose();
+    mean += K * (fix - mean.head<2>());
+    covariance -= (K * S * K.transpose()).eval();
   }
   void see(const Detection& detection, const Belief& belief) {
     const Eigen::Vector2d seen(detection[0], detection[1]);
@@ -90,6 +98,7 @@ void expect_kalman(SlamFilter& filter, KalmanFilter kalman, const SmallWorld& wo
   double dof = 0.0;
   drive_through(filter, world, {}, [&](std::size_t scan) {
     for (int step = 0; step < 8; ++step) kalman.move(belief);
+    if (const auto fix = world.drive.fix(scan)) kalman.fix(*fix, *belief.sigma_fix);
     for (const Detection& detection : world.drive.scan(scan)) kalman.see(detection, belief);
     const PoseMoments now = filter.estimate().spread;
     EXPECT_NEAR(now.mean.x, kalman.mean(0), 1e-10) << "scan " << scan;
@@ -120,6 +129,30 @@ TEST_P(OnALinearModel, LocalisationEqualsKalman) {
         kind.make(in_known_map(setup_for(kind, settings, {{"iterations", iterations}})));
     expect_kalman(*filter, KalmanFilter(*world.drive.prior), world, settings.noise);
   }
+}
+
+TEST_P(OnALinearModel, NoiseOfTheStepEqualsKalman) {
+  const auto& [kind, iterations] = GetParam();
+  Belief belief = linear_belief();
+  belief.control.increment = {.model = IncrementModel::additive, .sigma = {0.1, 0.2, 0.0}};
+  const SmallWorldSettings settings{.scans = 30, .noise = belief, .controls = {kStraight}};
+  const auto filter = make_filter(kind, settings, {{"iterations", iterations}});
+  expect_kalman(*filter, KalmanFilter(), small_world(settings), belief);
+}
+
+TEST_P(OnALinearModel, FixesEqualKalman) {
+  const auto& [kind, iterations] = GetParam();
+  if (!kind.takes_fixes) GTEST_SKIP() << "it takes no fixes";
+  Belief belief = linear_belief();
+  belief.sigma_fix = 0.3;
+  const SmallWorldSettings settings{.scans = 30, .noise = belief, .controls = {kStraight}};
+  const SmallWorld world = with_fixes(small_world(settings), belief, 2);
+  const auto filter = make_filter(kind, settings, {{"iterations", iterations}});
+  expect_kalman(*filter, KalmanFilter(), world, belief);
+  const SmallWorld known = in_known_map(world, {.position = 0.7, .landmark = 0.3});
+  const auto informed =
+      kind.make(in_known_map(setup_for(kind, settings, {{"iterations", iterations}})));
+  expect_kalman(*informed, KalmanFilter(*known.drive.prior), known, belief);
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -27,7 +27,7 @@ inline std::vector<FilterKind> filters_held_to_laws() {
 /// Returns whether a filter takes this sensor, as it is mounted.
 inline bool takes(const FilterKind& kind, const Sensor& sensor) {
   if (kind.sensors.empty()) return true;
-  return sensor.mounting.is_none() &&
+  return (sensor.mounting.is_none() || kind.takes_mountings) &&
          std::ranges::find(kind.sensors, name_of(sensor)) != kind.sensors.end();
 }
 

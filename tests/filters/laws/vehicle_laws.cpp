@@ -39,6 +39,19 @@ TEST_P(EveryFilterAndVehicle, TurningTheWorldTurnsTheEstimate) {
   on_every_vehicle(expect_turns_with_the_world);
 }
 
+TEST_P(EveryFilterAndVehicle, TurnsWithTheWorldWithNoiseOfTheStep) {
+  for (const IncrementNoise& increment : some_increments()) {
+    for (const SomeVehicle& some : some_vehicles()) {
+      SCOPED_TRACE(some.name);
+      SmallWorldSettings settings = settings_of(some);
+      settings.noise.control.increment = increment;
+      const auto filter =
+          make_filter(GetParam(), settings, {{"particles", std::to_string(kParticles)}});
+      expect_turns_with_the_world(*filter, small_world(settings));
+    }
+  }
+}
+
 TEST_P(EveryFilterAndVehicle, StaysNearTheTruth) {
   on_every_vehicle([](SlamFilter& filter, const SmallWorld& world) {
     drive_through(filter, world, Pose(), [&](std::size_t scan) {

@@ -128,6 +128,41 @@ TEST_P(EveryVehicleMoments, LinearisedIsWhatTheOthersAreWhereNoiseIsSmall) {
   }
 }
 
+/// Every transform adds the noise of a step in the frame of the vehicle before it.
+TEST_P(EveryVehicleMoments, HaveTheNoiseOfTheStep) {
+  RngStream draw({.seed = 73, .purpose = Draw::test});
+  const Pose pose{1.0, -2.0, 0.7};
+  const MotionIncrement before(pose, random_pose_covariance(draw, 0.5, 0.2));
+  const Control control = some().typical;
+  for (const IncrementNoise& increment : some_increments()) {
+    Belief noisy = belief();
+    noisy.control.increment = increment;
+    Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+    turn.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(pose.heading).toRotationMatrix();
+    Eigen::Matrix3d C = Eigen::Matrix3d::Zero();
+    const auto step = body_step(noisy.vehicle, control, kDuration);
+    for (const auto& [forward, left, angle] : increment_columns(increment, step, kDuration)) {
+      const Eigen::Vector3d column(forward, left, angle);
+      C += column * column.transpose();
+    }
+    const auto expect_added = [&](const MotionIncrement& with, const MotionIncrement& without) {
+      EXPECT_LT(boxminus(with.pose(), without.pose()).norm(), 1e-12);
+      const Eigen::Matrix3d added = symmetric(with.covariance()) - symmetric(without.covariance());
+      EXPECT_LT((added - turn * C * turn.transpose()).norm(), 1e-12);
+    };
+    expect_added(moved_by_quadrature(before, control, kDuration, noisy),
+                 moved_by_quadrature(before, control, kDuration, belief()));
+    expect_added(moved_by_unbiased_controls(before, control, kDuration, noisy),
+                 moved_by_unbiased_controls(before, control, kDuration, belief()));
+    const SigmaRule rule = central_difference_rule(1.7);
+    expect_added(moved_by_sigma_points(before, control, kDuration, noisy, rule),
+                 moved_by_sigma_points(before, control, kDuration, belief(), rule));
+    MotionIncrement with = before, without = before;
+    with.advance(control, kDuration, noisy), without.advance(control, kDuration, belief());
+    expect_added(with, without);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(All, EveryVehicleMoments, testing::ValuesIn(some_vehicles()),
                          [](const auto& instance) { return instance.param.name; });
 

@@ -83,7 +83,7 @@ class PlainJointFilter : public testing::TestWithParam<std::string> {
       expect_equal(plain->estimate().spread, fast->estimate().spread);
       if (world.itinerary.scan_step[scan] != step) continue;
       for (SlamFilter* filter : {plain.get(), fast.get()})
-        filter->update(context, world.drive.scan(scan));
+        update_with_scan(*filter, context, world, scan);
       ++scan;
       expect_equal(plain->estimate().spread, fast->estimate().spread);
       expect_equal(plain->report(), fast->report());
@@ -120,6 +120,19 @@ TEST_P(PlainJointFilter, EqualsTheFastFilterInAKnownMap) {
   }
 }
 
+TEST_P(PlainJointFilter, EqualsTheFastFilterWithFixes) {
+  if (!kind_named(GetParam()).takes_fixes) GTEST_SKIP() << "it takes no fixes";
+  Belief noise = rough();
+  noise.sigma_fix = 0.5;
+  const SmallWorldSettings settings{.seed = 10, .scans = 150, .noise = noise};
+  const SmallWorld world = with_fixes(small_world(settings), noise, 3);
+  for (const auto association : {Association::known, Association::nearest}) {
+    compared(settings, association, turned(world, kStart));
+    compared(settings, association,
+             turned(in_known_map(world, {.position = 0.5, .heading = 0.2}), kStart));
+  }
+}
+
 TEST_P(PlainJointFilter, EqualsTheFastFilterOfEveryVehicle) {
   for (const SomeVehicle& some : some_vehicles()) {
     SCOPED_TRACE(some.name);
@@ -130,6 +143,14 @@ TEST_P(PlainJointFilter, EqualsTheFastFilterOfEveryVehicle) {
               .scans = 60,
               .noise = noise,
               .controls = {some.typical, some.typical, some.typical, some.on_spot}});
+  }
+}
+
+TEST_P(PlainJointFilter, EqualsTheFastFilterWithNoiseOfTheStep) {
+  for (const IncrementNoise& increment : some_increments()) {
+    Belief noise = rough();
+    noise.control.increment = increment;
+    compared({.seed = 11, .scans = 100, .noise = noise});
   }
 }
 

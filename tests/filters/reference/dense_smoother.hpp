@@ -15,8 +15,7 @@ namespace montecarta::filters::reference {
 /// of full rank.
 class DenseSmoother {
  public:
-  DenseSmoother(const FactorGraph& graph, const SensorNoise& noise)
-      : graph_(graph), noise_(noise) {}
+  DenseSmoother(const FactorGraph& graph, const Belief& belief) : graph_(graph), belief_(belief) {}
 
   /// Steps of Gauss and Newton, so many, from `estimate`.
   void solve(const GraphEstimate& estimate, int steps) {
@@ -97,17 +96,18 @@ class DenseSmoother {
   void add_observation(std::size_t t, const FactorGraph::Observation& observation,
                        Eigen::Index row) {
     const Eigen::Vector2d place = landmark(observation.landmark);
-    const auto at = linearised_observation(pose(t), Point{place.x(), place.y()});
-    const Eigen::Vector2d per_sigma(1.0 / std::sqrt(noise_.first), 1.0 / std::sqrt(noise_.second));
-    r_.segment<2>(row) =
-        per_sigma.asDiagonal() * to_vector(residual(at.observation, observation.observed));
-    J_.block<2, 3>(row, row_of_pose(t)) = per_sigma.asDiagonal() * pose_jacobian(at);
+    const auto at =
+        linearised_detection(belief_.sensor, pose(t), Point{place.x(), place.y()}).value();
+    const Eigen::Vector2d per_sigma = deviations_of(belief_.sensor, belief_).cwiseInverse();
+    r_.segment<2>(row) = per_sigma.asDiagonal() *
+                         models::residual(at.value, observation.observed, wraps_of(belief_.sensor));
+    J_.block<2, 3>(row, row_of_pose(t)) = per_sigma.asDiagonal() * at.by_pose;
     J_.block<2, 2>(row, row_of_landmark(observation.landmark)) =
-        per_sigma.asDiagonal() * landmark_jacobian(at);
+        per_sigma.asDiagonal() * at.by_landmark;
   }
 
   const FactorGraph& graph_;
-  SensorNoise noise_;
+  Belief belief_;
   Eigen::MatrixXd J_;
   Eigen::VectorXd r_;
 };

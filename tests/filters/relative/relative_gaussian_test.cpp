@@ -78,7 +78,7 @@ TEST(RelativeGaussian, IsConditionedAsByKalmanWhereAllIsLinear) {
   Eigen::VectorXd v(6);
   for (const auto& [l, seen] : scan)
     v.segment<2>(2 * static_cast<Eigen::Index>(l)) =
-        to_vector(seen) - z.segment<2>(2 * static_cast<Eigen::Index>(l));
+        seen - z.segment<2>(2 * static_cast<Eigen::Index>(l));
   const Eigen::LLT<Eigen::MatrixXd> llt(S);
   const Eigen::MatrixXd K = llt.solve(H * P).transpose();
   EXPECT_FALSE(outcome.is_faulty);
@@ -103,8 +103,8 @@ TEST(RelativeGaussian, ComesToTheMinimumWhereItIsNotLinear) {
   Eigen::VectorXd weighed(6);
   for (const auto& [l, seen] : scan) {
     const auto row = 2 * static_cast<Eigen::Index>(l);
-    weighed(row) = (seen.range - z(row)) / kRough.first;
-    weighed(row + 1) = wrap(seen.bearing - z(row + 1)) / kRough.second;
+    weighed(row) = (seen(0) - z(row)) / kRough.first;
+    weighed(row + 1) = wrap(seen(1) - z(row + 1)) / kRough.second;
   }
   EXPECT_GT((gaussian.mean() - before).norm(), 0.5);
   EXPECT_LT((gaussian.mean() - before - PH * weighed).norm(), 0.01 * std::sqrt(P.trace()));
@@ -221,9 +221,9 @@ TEST(RelativeGaussian, TellsWhatIsExpectedOfAllLandmarks) {
   S.diagonal() += Eigen::Vector2d(kRough.first, kRough.second).replicate<3, 1>();
   std::size_t told = 0;
   gaussian.expect_all(
-      [&](std::size_t l, const RangeBearing<double>& expected, const Eigen::Matrix2d& covariance) {
+      [&](std::size_t l, const Eigen::Vector2d& expected, const Eigen::Matrix2d& covariance) {
         const auto row = 2 * static_cast<Eigen::Index>(l);
-        EXPECT_LT((to_vector(expected) - z.segment<2>(row)).norm(), 1e-12);
+        EXPECT_LT((expected - z.segment<2>(row)).norm(), 1e-12);
         EXPECT_LT((covariance - S.block<2, 2>(row, row)).norm(), 1e-7 * covariance.norm());
         ++told;
       });

@@ -36,7 +36,7 @@ double largest_difference(const Eigen::MatrixXd& P, const Eigen::MatrixXd& expec
 TEST(PosesGivenMap, CovarianceIsThatOfTheDenseSmoother) {
   const SmallWorldSettings settings{.seed = 51, .landmarks = 21, .scans = 110};
   const Solved solved(settings);
-  reference::DenseSmoother dense(solved.small.graph, SensorNoise::of(settings.noise));
+  reference::DenseSmoother dense(solved.small.graph, settings.noise);
   dense.solve(solved.small.estimate, 1);
   const std::vector<std::size_t> chosen{0, 1, 3, 4};
   std::vector<std::size_t> poses;
@@ -94,7 +94,7 @@ TEST(RelativeLaplace, KeepsALandmarkNearAFrameInCartesianCoordinates) {
     for (std::uint32_t l = 0; l < landmarks.size(); ++l) {
       const Point& place = landmarks[l];
       if (std::hypot(place.x - pose.x, place.y) < 0.5) continue;
-      small.graph.add_observation(l, linearised_observation(pose, place).observation);
+      small.graph.add_observation(l, to_vector(linearised_observation(pose, place).observation));
       if (scan == 1) small.estimate.add_landmark(place);
     }
   }

@@ -35,10 +35,11 @@ inline SmallGraph small_graph(const SmallWorld& world, const Belief& belief, Beg
     for (const Detection& detection : world.drive.scan(scan)) {
       const auto found = std::ranges::find(small.identities, detection.identity);
       const auto landmark = static_cast<std::uint32_t>(found - small.identities.begin());
-      small.graph.add_observation(landmark, observation_of(detection));
+      small.graph.add_observation(landmark, vector_of(detection));
       if (found != small.identities.end()) continue;
       small.identities.push_back(detection.identity);
-      small.estimate.add_landmark(linearised_place(at, observation_of(detection)).point);
+      const Eigen::Vector2d place = placed_landmark(belief.sensor, at, vector_of(detection))->point;
+      small.estimate.add_landmark({place.x(), place.y()});
     }
     motion.restart();
     ++scan;

@@ -6,6 +6,7 @@
 #include "tests/filters/same_runs.hpp"
 #include "tests/filters/small_world.hpp"
 #include "tests/filters/smoothing/small_graph.hpp"
+#include "tests/filters/some_models.hpp"
 
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
@@ -26,14 +27,16 @@ double largest_distance(const GraphEstimate& a, const GraphEstimate& b) {
   return largest;
 }
 
-TEST(FullSmoothing, EqualsTheDenseSmoother) {
-  const SmallWorldSettings settings{.seed = 41, .landmarks = 21, .scans = 60};
+class FullSmoothingBy : public testing::TestWithParam<SomeSensor> {};
+
+TEST_P(FullSmoothingBy, EqualsTheDenseSmoother) {
+  SmallWorldSettings settings{.seed = 41, .landmarks = 21, .scans = 60};
+  settings.noise.sensor = GetParam().sensor;
   const SmallWorld world = small_world(settings);
   SmallGraph small = small_graph(world, settings.noise, Beginning::dead_reckoning);
-  const SensorNoise noise = SensorNoise::of(settings.noise);
-  reference::DenseSmoother dense(small.graph, noise);
+  reference::DenseSmoother dense(small.graph, settings.noise);
   dense.solve(small.estimate, 15);
-  GaussNewton solver(noise);
+  GaussNewton solver{BelievedSensor(settings.noise)};
   ASSERT_TRUE(solver.solve(small.graph, 0.0, small.estimate));
   for (std::size_t t = 0; t < small.graph.poses(); ++t) {
     EXPECT_LT(boxminus(small.estimate.poses[t], dense.pose(t)).norm(), 1e-9) << "pose " << t;
@@ -50,6 +53,15 @@ TEST(FullSmoothing, EqualsTheDenseSmoother) {
   EXPECT_LT((map.cross.topRows(n) - P.bottomLeftCorner(n, 3)).norm(), 1e-9);
   EXPECT_LT((map.covariance.topLeftCorner(n, n) - P.bottomRightCorner(n, n)).norm(), 1e-9);
 }
+
+std::vector<SomeSensor> sensors_that_fix_landmarks() {
+  std::vector<SomeSensor> sensors = some_sensors();
+  std::erase_if(sensors, [](const SomeSensor& some) { return !fixes_landmark(some.sensor); });
+  return sensors;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, FullSmoothingBy, testing::ValuesIn(sensors_that_fix_landmarks()),
+                         [](const auto& instance) { return instance.param.name; });
 
 // The vehicle drives once around its circle of 27 m, in noise with which dead reckoning ends metres
 // away: additive steps do not come from there to the minimum.
@@ -85,7 +97,9 @@ TEST(FullSmoothing, TakesMotionsThatAreCertainInADirection) {
     for (const auto& [landmark, observed] : small.graph.observations_of(t)) {
       const bool fresh = landmark == certain.landmarks();
       certain.add_observation(landmark, observed);
-      if (fresh) estimate.add_landmark(linearised_place(at, observed).point);
+      if (fresh)
+        estimate.add_landmark(
+            linearised_place(at, RangeBearing<double>{observed(0), observed(1)}).point);
     }
   }
   GaussNewton solver(SensorNoise::of(settings.noise));
