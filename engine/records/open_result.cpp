@@ -263,15 +263,7 @@ OpenResult resume_result(const fs::path& path, const StudyPlan& plan, const Text
   return begun ? continued_work(part_of(path), path, planned) : finished_result(path, planned);
 }
 
-namespace {
-
-// A cluster may run two copies of one task: a node that lost its connection continues while the
-// scheduler starts the task elsewhere, and locks do not work on network file systems. Therefore no
-// process writes a file that another process may be writing, and all bytes taken from another file
-// are checked.
-
-/// A unique name for the file of this process: OUT.h5.part.HOST.PID.TIME.
-fs::path own_name(const fs::path& path) {
+fs::path name_of_attempt(const fs::path& path) {
   std::array<char, 65> host{};
   ::gethostname(host.data(), host.size() - 1);
   const auto now = std::chrono::system_clock::now().time_since_epoch().count();
@@ -279,6 +271,13 @@ fs::path own_name(const fs::path& path) {
   return name += "." + std::string(host.data()) + "." + std::to_string(::getpid()) + "." +
                  std::to_string(now);
 }
+
+namespace {
+
+// A cluster may run two copies of one task: a node that lost its connection continues while the
+// scheduler starts the task elsewhere, and locks do not work on network file systems. Therefore no
+// process writes a file that another process may be writing, and all bytes taken from another file
+// are checked.
 
 /// The files of other attempts at `path`, finished or running: OUT.h5.part.*
 std::vector<fs::path> attempts_at(const fs::path& path) {
@@ -361,7 +360,7 @@ void copy_complete_runs(const fs::path& other, const ResultDescription& planned,
 OpenResult open_attempt(const fs::path& path, const StudyPlan& plan, const TextPairs& provenance) {
   const ResultDescription planned = describe(plan, provenance);
   if (is_there(path)) return finished_result(path, planned);
-  const fs::path own = own_name(path);
+  const fs::path own = name_of_attempt(path);
   OpenResult result = take_checkpoint(path, own, planned)
                           ? continued_work(own, path, planned)
                           : new_work(own, planned, Existing::refuse);
@@ -385,9 +384,9 @@ void rename_finished(OpenResult& attempt, const fs::path& path) {
   }
 }
 
-void complete_attempt(OpenResult& attempt, const fs::path& path) {
+void complete_attempt(PosixFile& attempt, const fs::path& path) {
   try {
-    if (!is_there(path)) attempt.file.rename(path, Existing::refuse);
+    if (!is_there(path)) attempt.rename(path, Existing::refuse);
   } catch (const std::runtime_error&) {
     if (!is_there(path)) throw;  // another attempt finished first, with the same bytes
   }
