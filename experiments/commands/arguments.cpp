@@ -6,6 +6,7 @@
 #include "engine/text/visible_text.hpp"
 #include "engine/text/wrapped_text.hpp"
 #include "engine/threads/thread_budget.hpp"
+#include "experiments/commands/array_index.hpp"
 #include "experiments/files/files.hpp"
 #include "experiments/text/words.hpp"
 
@@ -281,7 +282,7 @@ std::optional<RunRange> range_of(const Arguments& arguments, const Settings& set
     throw StudyError("--runs and --shard: both choose runs (one is enough): remove one of them");
   }
   if (range) return parse_run_range(*range, runs);
-  if (shard) return shard_of(settings, *shard);
+  if (shard) return shard_of(settings, with_array_index(*shard));
   return std::nullopt;
 }
 

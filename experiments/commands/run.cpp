@@ -9,6 +9,7 @@
 #include "engine/text/visible_text.hpp"
 #include "engine/threads/thread_budget.hpp"
 #include "experiments/commands/arguments.hpp"
+#include "experiments/commands/array_index.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/output_path.hpp"
 #include "experiments/commands/stored_result.hpp"
@@ -35,7 +36,9 @@ ProgressStyle progress_of(const Arguments& arguments) {
 std::string resuming_command(const Arguments& arguments) {
   std::string line = std::filesystem::read_symlink("/proc/self/exe").string() + " run";
   for (const std::string& word : arguments.words()) {
-    if (word != "--force" && word != "--resume") line += " " + shell_quoted(word);
+    if (word == "--force" || word == "--resume") continue;
+    const std::size_t value = word.starts_with("--shard=") ? word.find('=') + 1 : 0;
+    line += " " + shell_quoted(word.substr(0, value) + with_array_index(word.substr(value)));
   }
   return arguments.has("attempt") ? line : line + " --resume";
 }

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
 #include <fstream>
 #include <thread>
 
@@ -106,7 +107,12 @@ TEST_F(SharedFolder, LeavesAShardToALivingWorker) {
   std::filesystem::remove(claim);
   std::atomic<bool> is_over = false;
   std::thread other([&] {
-    for (int sign = 0; !is_over; ++sign) std::ofstream(claim) << "at work: other 17 " << sign;
+    std::ofstream file(claim);
+    for (int sign = 1000; !is_over; ++sign) {
+      file.seekp(0);
+      file << "at work: other 17 " << sign << std::flush;
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
   });
   const Called called = work();
   is_over = true;
