@@ -86,6 +86,29 @@ def write_whole(path, text):
     draft.replace(path)
 
 
+def is_submitted(folder):
+    """Whether submit made the folder, and not `montecarta work`."""
+    return (folder / "logs").is_dir()
+
+
+def claimed(folder):
+    """Indices of shards on which workers of `montecarta work` are, alive or lost."""
+    last = {}
+    for path in (folder / "shards").glob("shard_*.h5.claim.*"):
+        match = re.fullmatch(r"shard_(\d{4,})\.h5\.claim\.(\d+)", path.name)
+        if match:
+            index, number = int(match.group(1)), int(match.group(2))
+            last[index] = max(last.get(index, (0, path)), (number, path))
+    return {index for index, (_, path) in last.items() if is_at_work(path)}
+
+
+def is_at_work(claim):
+    try:
+        return claim.read_text().startswith("at work")
+    except OSError:  # removed meanwhile
+        return False
+
+
 Stored = namedtuple("Stored", "state sha256 done failed missing seconds problem")
 
 

@@ -138,4 +138,12 @@ MergeSummary merge_results(const fs::path& out, const std::vector<fs::path>& pat
   return summary;
 }
 
+MergeSummary merge_attempt(const fs::path& out, const std::vector<fs::path>& shards) {
+  const fs::path own = name_of_attempt(out);
+  const MergeSummary summary = merge_results(own, shards, Existing::refuse);
+  PosixFile file(own, PosixFile::Mode::write);
+  complete_attempt(file, out);
+  return summary;
+}
+
 }  // namespace montecarta::engine

@@ -17,4 +17,9 @@ namespace montecarta::engine {
 MergeSummary merge_results(const std::filesystem::path& out,
                            const std::vector<std::filesystem::path>& shards, Existing existing);
 
+/// The same for several processes that may merge into `out` at once, or be killed: each writes a
+/// file of its own, of which the first complete one gets the name `out`.
+MergeSummary merge_attempt(const std::filesystem::path& out,
+                           const std::vector<std::filesystem::path>& shards);
+
 }  // namespace montecarta::engine

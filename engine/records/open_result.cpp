@@ -3,6 +3,7 @@
 
 #include "engine/errors.hpp"
 #include "engine/records/check_file.hpp"
+#include "engine/records/fingerprint.hpp"
 #include "engine/records/result_format.hpp"
 #include "engine/records/result_schema.hpp"
 #include "engine/records/seal.hpp"
@@ -11,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <span>
 #include <system_error>
 #include <unistd.h>
 
@@ -254,13 +256,116 @@ OpenResult continued_work(const fs::path& work, const fs::path& path,
   return result;
 }
 
+/// Copies undamaged runs that are missing here from another file, which has the first `runs` of the
+/// runs here. Returns the number of runs of cells that were copied.
+std::size_t copy_complete_runs(const PosixFile& from, const ResultSlabs& slabs, std::size_t runs,
+                               OpenResult& to) {
+  std::vector<std::byte> buffer;
+  std::size_t copied = 0;
+  for (std::size_t cell = 0; cell < to.status.size(); ++cell) {
+    const auto status = read_statuses(from, slabs.cells[cell], runs);
+    for (std::size_t run = 0; run < status.size(); ++run) {
+      if (!is_stored(status[run]) || to.status[cell][run] != RunStatus::missing) continue;
+      if (!truth_is_whole(from, slabs, run, buffer) ||
+          !run_is_whole(from, slabs.cells[cell], run, buffer))
+        continue;
+      if (!to.truth_stored[run]) copy_truth(from, slabs, to.file, to.slabs, run);
+      to.truth_stored[run] = true;
+      copy_cell(from, slabs.cells[cell], to.file, to.slabs.cells[cell], run);
+      to.status[cell][run] = status[run];
+      ++copied;
+    }
+  }
+  return copied;
+}
+
+/// Says in the provenance of unfinished work that its first runs are those of the result that it
+/// replaces.
+constexpr const char* kFirstRuns = "a result that has the first runs";
+
+/// The description of a study if it had as many runs as `stored`.
+ResultDescription with_runs_of(const ResultDescription& stored, ResultDescription planned) {
+  const std::string begin = "\nruns = ", runs = std::to_string(planned.study_runs);
+  const std::size_t line = planned.study_text.find(begin + runs + "\n");
+  if (line != std::string::npos) {
+    planned.study_text.replace(line + begin.size(), runs.size(), std::to_string(stored.study_runs));
+  }
+  planned.study_sha256 = sha256(planned.study_text);
+  planned.study_runs = stored.study_runs;
+  planned.full_runs = std::min(planned.full_runs, stored.study_runs);
+  return planned;
+}
+
+/// The description of the result at `path` if it has the first runs of the plan and nothing else
+/// differs; nullopt if there is none. Throws StudyError if such runs cannot be kept.
+std::optional<ResultDescription> first_runs_at(const fs::path& path, const StudyPlan& plan,
+                                               const ResultDescription& planned) {
+  std::optional<ResultDescription> stored;
+  try {
+    if (is_there(path)) stored = read_description(path);
+  } catch (const std::runtime_error&) {
+    return std::nullopt;  // whoever opens the file says why
+  }
+  const bool is_shorter =
+      stored && stored->study_runs < planned.study_runs &&
+      stored->runs.size() < planned.runs.size() &&
+      std::ranges::equal(stored->runs, std::span(planned.runs).first(stored->runs.size()));
+  if (!is_shorter || difference(with_runs_of(*stored, planned), *stored, path)) return std::nullopt;
+  if (!plan.is_enough && stored->drives.empty() && !stored->sums) return stored;
+  throw StudyError(path.string() + ": has " + std::to_string(stored->study_runs) +
+                   " runs, to which none can be added (" +
+                   (plan.is_enough ? "study.until chose among all of them"
+                                   : "it holds sums, or a drive for each run") +
+                   "): run the longer study into another file");
+}
+
+/// Copies the runs of a finished result to the work that has more.
+void take_over(const fs::path& path, const ResultDescription& stored, OpenResult& to) {
+  const PosixFile from(path, PosixFile::Mode::read);
+  const ResultSlabs slabs = find_slabs(path, stored);
+  const std::size_t copied = copy_complete_runs(from, slabs, stored.runs.size(), to);
+  to.notes.push_back(std::to_string(copied) + " runs were taken over from " + path.string());
+}
+
+/// Begins the work on a result with more runs than the one at `path`, which stays until then.
+OpenResult begin_extension(const fs::path& path, const ResultDescription& stored,
+                           ResultDescription planned) {
+  std::vector<std::string> notes = build_differences(stored.provenance, planned.provenance);
+  planned.provenance.emplace_back(format::kReplaces, kFirstRuns);
+  OpenResult result = new_work(part_of(path), planned, Existing::refuse);
+  result.existing = Existing::replace;
+  result.notes = std::move(notes);
+  return result;
+}
+
+bool is_extension(const ResultDescription& work) {
+  return std::ranges::find(work.provenance,
+                           std::pair<std::string, std::string>(format::kReplaces, kFirstRuns)) !=
+         work.provenance.end();
+}
+
 }  // namespace
 
 OpenResult resume_result(const fs::path& path, const StudyPlan& plan, const TextPairs& provenance) {
   const bool begun = is_there(part_of(path));
   if (!begun && !is_there(path)) return create_result(path, plan, provenance, Existing::refuse);
   const ResultDescription planned = describe(plan, provenance);
-  return begun ? continued_work(part_of(path), path, planned) : finished_result(path, planned);
+  const auto first_runs = first_runs_at(path, plan, planned);
+  if (!begun && !first_runs) return finished_result(path, planned);
+  OpenResult result = begun ? continued_work(part_of(path), path, planned)
+                            : begin_extension(path, *first_runs, planned);
+  if (first_runs && is_extension(read_description(part_of(path))))
+    take_over(path, *first_runs, result);
+  return result;
+}
+
+fs::path name_of_attempt(const fs::path& path) {
+  std::array<char, 65> host{};
+  ::gethostname(host.data(), host.size() - 1);
+  const auto now = std::chrono::system_clock::now().time_since_epoch().count();
+  fs::path name = part_of(path);
+  return name += "." + std::string(host.data()) + "." + std::to_string(::getpid()) + "." +
+                 std::to_string(now);
 }
 
 namespace {
@@ -269,16 +374,6 @@ namespace {
 // scheduler starts the task elsewhere, and locks do not work on network file systems. Therefore no
 // process writes a file that another process may be writing, and all bytes taken from another file
 // are checked.
-
-/// A unique name for the file of this process: OUT.h5.part.HOST.PID.TIME.
-fs::path own_name(const fs::path& path) {
-  std::array<char, 65> host{};
-  ::gethostname(host.data(), host.size() - 1);
-  const auto now = std::chrono::system_clock::now().time_since_epoch().count();
-  fs::path name = part_of(path);
-  return name += "." + std::string(host.data()) + "." + std::to_string(::getpid()) + "." +
-                 std::to_string(now);
-}
 
 /// The files of other attempts at `path`, finished or running: OUT.h5.part.*
 std::vector<fs::path> attempts_at(const fs::path& path) {
@@ -319,28 +414,6 @@ bool take_checkpoint(const fs::path& path, const fs::path& own, const ResultDesc
   return !failed || is_there(own);
 }
 
-/// Copies undamaged runs that are missing here from the file of another attempt. Returns the number
-/// of runs of cells that were copied.
-std::size_t copy_complete_runs(const PosixFile& from, const ResultSlabs& slabs, OpenResult& to) {
-  std::vector<std::byte> buffer;
-  std::size_t copied = 0;
-  for (std::size_t cell = 0; cell < to.status.size(); ++cell) {
-    const auto status = read_statuses(from, slabs.cells[cell], to.truth_stored.size());
-    for (std::size_t run = 0; run < status.size(); ++run) {
-      if (!is_stored(status[run]) || to.status[cell][run] != RunStatus::missing) continue;
-      if (!truth_is_whole(from, slabs, run, buffer) ||
-          !run_is_whole(from, slabs.cells[cell], run, buffer))
-        continue;
-      if (!to.truth_stored[run]) copy_truth(from, slabs, to.file, to.slabs, run);
-      to.truth_stored[run] = true;
-      copy_cell(from, slabs.cells[cell], to.file, to.slabs.cells[cell], run);
-      to.status[cell][run] = status[run];
-      ++copied;
-    }
-  }
-  return copied;
-}
-
 /// Copies runs from another attempt, which may still be writing its file.
 void copy_complete_runs(const fs::path& other, const ResultDescription& planned, OpenResult& to) {
   const auto stored = description_of(other, planned);
@@ -348,7 +421,8 @@ void copy_complete_runs(const fs::path& other, const ResultDescription& planned,
   const std::string name = other.filename().string();
   try {
     const PosixFile from(other, PosixFile::Mode::read);
-    const std::size_t copied = copy_complete_runs(from, find_slabs(other, *stored), to);
+    const std::size_t copied =
+        copy_complete_runs(from, find_slabs(other, *stored), stored->runs.size(), to);
     if (copied > 0)
       to.notes.push_back(std::to_string(copied) + " runs were taken over from " + name);
   } catch (const std::runtime_error& error) {
@@ -361,7 +435,7 @@ void copy_complete_runs(const fs::path& other, const ResultDescription& planned,
 OpenResult open_attempt(const fs::path& path, const StudyPlan& plan, const TextPairs& provenance) {
   const ResultDescription planned = describe(plan, provenance);
   if (is_there(path)) return finished_result(path, planned);
-  const fs::path own = own_name(path);
+  const fs::path own = name_of_attempt(path);
   OpenResult result = take_checkpoint(path, own, planned)
                           ? continued_work(own, path, planned)
                           : new_work(own, planned, Existing::refuse);
@@ -385,9 +459,9 @@ void rename_finished(OpenResult& attempt, const fs::path& path) {
   }
 }
 
-void complete_attempt(OpenResult& attempt, const fs::path& path) {
+void complete_attempt(PosixFile& attempt, const fs::path& path) {
   try {
-    if (!is_there(path)) attempt.file.rename(path, Existing::refuse);
+    if (!is_there(path)) attempt.rename(path, Existing::refuse);
   } catch (const std::runtime_error&) {
     if (!is_there(path)) throw;  // another attempt finished first, with the same bytes
   }

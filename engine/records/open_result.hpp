@@ -46,10 +46,12 @@ OpenResult resume_result(const std::filesystem::path& path, const StudyPlan& pla
 OpenResult open_attempt(const std::filesystem::path& path, const StudyPlan& plan,
                         const TextPairs& provenance);
 
+/// A unique name for the file of one attempt at the result `path`: OUT.h5.part.HOST.PID.TIME.
+std::filesystem::path name_of_attempt(const std::filesystem::path& path);
 /// Leaves an incomplete attempt to a later one, as OUT.h5.part unless that name is taken.
 void rename_finished(OpenResult& attempt, const std::filesystem::path& path);
 /// Renames a complete attempt to the final name, unless another one was first, and removes the
 /// files of all other attempts.
-void complete_attempt(OpenResult& attempt, const std::filesystem::path& path);
+void complete_attempt(PosixFile& attempt, const std::filesystem::path& path);
 
 }  // namespace montecarta::engine

@@ -162,7 +162,9 @@ std::optional<std::string> difference(const ResultDescription& a, const ResultDe
     return path.string() + ": belongs to a study of another number of runs (" +
            std::to_string(b.study_runs) + ", not " + std::to_string(a.study_runs) +
            "): compute the parts of one study, all with --set study.runs=" + most +
-           " and each with its --runs FIRST:LAST";
+           " and each with its --runs FIRST:LAST, or add runs to the result of fewer by "
+           "'montecarta run STUDY -o RESULT --set study.runs=" +
+           most + " --resume'";
   }
   if (a.study_sha256 != b.study_sha256) {
     return path.string() + ": belongs to another study ('" + b.study_name + "', SHA-256 " +

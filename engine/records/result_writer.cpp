@@ -143,7 +143,7 @@ void ResultWriter::finish() {
   }
   if (is_finished()) return;
   result_.file.sync();
-  if (result_.claim == Claim::attempt) return complete_attempt(result_, path_);
+  if (result_.claim == Claim::attempt) return complete_attempt(result_.file, path_);
   result_.file.rename(path_, result_.existing);
 }
 

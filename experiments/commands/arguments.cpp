@@ -6,9 +6,9 @@
 #include "engine/text/visible_text.hpp"
 #include "engine/text/wrapped_text.hpp"
 #include "engine/threads/thread_budget.hpp"
+#include "experiments/commands/array_index.hpp"
 #include "experiments/files/files.hpp"
 #include "experiments/study/known_filters.hpp"
-#include "experiments/study/make_plan.hpp"
 #include "experiments/text/words.hpp"
 
 #include <boost/program_options.hpp>
@@ -283,8 +283,7 @@ std::optional<RunRange> range_of(const Arguments& arguments, const Settings& set
     throw StudyError("--runs and --shard: both choose runs (one is enough): remove one of them");
   }
   if (range) return parse_run_range(*range, runs);
-  const bool in_groups = settings.lists("record", "columns", "sums");
-  if (shard) return parse_shard(*shard, runs, in_groups ? kRunsOfAGroup : 1);
+  if (shard) return shard_of(settings, with_array_index(*shard));
   return std::nullopt;
 }
 
@@ -312,10 +311,18 @@ ExternalPrograms programs_of(const Study& study, const Arguments& arguments) {
   return ExternalPrograms::refused;
 }
 
-Study study_of(const Arguments& arguments) {
-  const std::string& name = arguments.operands().front();
+Study study_named(const std::string& name, const std::vector<std::string>& overrides) {
   const auto shipped = std::filesystem::exists(name) ? std::nullopt : shipped_study(name);
-  return read_study(shipped.value_or(name), known_filters(), arguments.texts("set"));
+  return read_study(shipped.value_or(name), known_filters(), overrides);
+}
+
+Study study_of(const Arguments& arguments) {
+  return study_named(arguments.operands().front(), arguments.texts("set"));
+}
+
+RunRange shard_of(const Settings& settings, const std::string& shard) {
+  const bool in_groups = settings.lists("record", "columns", "sums");
+  return parse_shard(shard, settings.count("study", "runs"), in_groups ? kRunsOfAGroup : 1);
 }
 
 StudyPlan plan_of(const Study& study, const Arguments& arguments) {

@@ -5,6 +5,7 @@
 #include "engine/records/result_description.hpp"
 #include "engine/threads/parallel.hpp"
 #include "experiments/external/external_filter.hpp"
+#include "experiments/study/make_plan.hpp"
 #include "experiments/study/study.hpp"
 
 #include <cstddef>
@@ -84,6 +85,10 @@ std::string help_text(const CommandSpec& spec);
 ExternalPrograms programs_of(const Study& study, const Arguments& arguments);
 /// Reads the study that the first operand names, a file or a shipped study, and applies --set.
 Study study_of(const Arguments& arguments);
+/// Reads a study, a file or a shipped study, and applies values of --set.
+Study study_named(const std::string& name, const std::vector<std::string>& overrides);
+/// The runs of a shard, "I/N", of the study that has these settings.
+RunRange shard_of(const Settings& settings, const std::string& shard);
 /// Makes the plan of `study`, restricted by --runs or --shard, with external programs if
 /// --allow-external was given.
 StudyPlan plan_of(const Study& study, const Arguments& arguments);

@@ -18,10 +18,12 @@
 
 #include <algorithm>
 #include <fstream>
+#include <functional>
 #include <iostream>
 #include <limits>
 #include <malloc.h>
 #include <new>
+#include <numeric>
 #include <set>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -31,13 +33,32 @@ namespace {
 
 constexpr double kTrialSeconds = 0.25;
 
-/// Resident memory of this process [byte].
-double resident_bytes() {
+/// [byte] Memory of a process with one thread and no filter, most of it the program and libraries.
+constexpr double kProgramBytes = 2.6e7;
+
+/// [byte/s] Rate at which one thread hands its runs to the operating system. No disk is faster.
+constexpr double kWritingRate = 1.9e8;
+
+/// Memory of this process without the pages of files, such as the program [byte].
+double private_bytes() {
   std::ifstream file("/proc/self/statm");
-  double all = 0.0, resident = 0.0;
-  file >> all >> resident;
-  return resident * static_cast<double>(::sysconf(_SC_PAGESIZE));
+  double all = 0.0, resident = 0.0, shared = 0.0;
+  file >> all >> resident >> shared;
+  return (resident - shared) * static_cast<double>(::sysconf(_SC_PAGESIZE));
 }
+
+/// Time of a trial: that of this thread, which does not grow while others use the processor, or for
+/// a program of the user, which runs elsewhere, the time that has passed.
+class TrialClock {
+ public:
+  explicit TrialClock(const Cell& cell) : is_elsewhere_(cell.filter == "external") {}
+  double seconds() const { return is_elsewhere_ ? stopwatch_.seconds() : cpu_.seconds(); }
+
+ private:
+  bool is_elsewhere_;
+  Stopwatch stopwatch_;
+  engine::CpuClock cpu_;
+};
 
 /// Limits the memory of this process, while the object exists, to the free memory of the
 /// machine, so that an allocation beyond it throws an exception instead of ending the process.
@@ -119,8 +140,8 @@ std::optional<Trial> trial_of(const Cell& cell, const StudyPlan& plan, const Dri
   const std::size_t steps = itinerary.steps();
   const WithinFreeMemory limit;
   ::malloc_trim(0);  // memory left by an earlier trial would hide that of this one
-  const double before = resident_bytes();
-  Stopwatch stopwatch;
+  const double before = private_bytes();
+  TrialClock clock(cell);
   double first = 0.0, all = 0.0;
   Held half, end;
   std::size_t k = 0;
@@ -131,17 +152,17 @@ std::optional<Trial> trial_of(const Cell& cell, const StudyPlan& plan, const Dri
     filter->start(itinerary.start);
     step_through(*filter, plan, drive, 0, scan);
     scan = 0;
-    stopwatch = Stopwatch();
+    clock = TrialClock(cell);
     filter->start(itinerary.start);
     for (; k < steps && all < kTrialSeconds; ++k) {
       step_through(*filter, plan, drive, k, scan);
-      all = stopwatch.seconds();
+      all = clock.seconds();
       if (k == 0) first = all;
       if (half.steps == 0 && scan > 0 && 2.0 * all > kTrialSeconds) {
-        half = {k + 1, resident_bytes() - before};
+        half = {k + 1, private_bytes() - before};
       }
     }
-    end = {k, resident_bytes() - before};
+    end = {k, private_bytes() - before};
   } catch (const std::bad_alloc&) {
     return Trial{.seconds = 0.0, .bytes = std::numeric_limits<double>::infinity()};
   } catch (const std::exception&) {
@@ -184,8 +205,19 @@ double size_of_file(const StudyPlan& plan) {
 struct Costs {
   double cpu_seconds = 0.0;
   double disk = 0.0;        ///< [byte] size of the result file
+  double written = 0.0;     ///< [byte] size of the runs, which may be more than is kept
   double per_thread = 0.0;  ///< [byte] memory of one thread
+  /// [byte] Largest first: records of runs that are stored in full, each held by one thread while
+  /// it makes the run.
+  std::vector<double> full_records = {};
   std::vector<TableRow> rows{{"run time", "run size", "all runs"}};
+
+  /// [byte] Memory of the process.
+  double memory(int threads) const {
+    const auto most = std::min(full_records.size(), static_cast<std::size_t>(threads));
+    const auto last = full_records.begin() + static_cast<std::ptrdiff_t>(most);
+    return kProgramBytes + per_thread * threads + std::accumulate(full_records.begin(), last, 0.0);
+  }
 };
 
 std::string time_of_run(const std::optional<Trial>& trial, double seconds) {
@@ -201,11 +233,14 @@ Costs costs_of(const StudyPlan& plan) {
   const double runs = static_cast<double>(plan.runs_here());
   const double alike = runs_like_the_first(plan);
   const ResultDescription file = describe(plan, {});
-  const auto full_runs = static_cast<double>(file.full_runs_here());
+  const std::size_t n_full_runs = file.full_runs_here();
+  const auto full_runs = static_cast<double>(n_full_runs);
   const std::vector<RecordLayout> layouts = layouts_of(plan, Detail::usual);
   const std::vector<RecordLayout> full_layouts = layouts_of(plan, Detail::full);
   Costs costs;
   costs.disk = size_of_file(plan);
+  costs.written = file.bytes();
+  double largest_record = 0.0;
   costs.per_thread = 2.0 * static_cast<double>(itinerary.steps() * sizeof(Pose));
   for (std::size_t c = 0; c < plan.cells.size(); ++c) {
     const std::optional<Trial> first = trial_of(plan.cells[c], plan, drive);
@@ -217,8 +252,14 @@ Costs costs_of(const StudyPlan& plan) {
     costs.rows.push_back(
         {time_of_run(first, seconds * alike / runs), bytes_text(bytes), bytes_text(all)});
     costs.cpu_seconds += seconds * (engine::are_runs_equal(plan, plan.cells[c]) ? 1.0 : alike);
-    costs.per_thread += bytes + std::min(full_runs, 1.0) * more + first.value_or(Trial{}).bytes;
+    costs.per_thread += first.value_or(Trial{}).bytes;
+    largest_record = std::max(largest_record, bytes);
+    // As many as can be held at once: beyond the number of threads it does not matter.
+    costs.full_records.insert(costs.full_records.end(), std::min<std::size_t>(n_full_runs, 1024),
+                              bytes + more);
   }
+  costs.per_thread += largest_record;
+  std::ranges::sort(costs.full_records, std::greater());
   return costs;
 }
 
@@ -235,20 +276,35 @@ std::string filters_of(const Study& study) {
   return joined(names);
 }
 
+/// Says that the disk takes longer than the filters, or nothing.
+TextPairs disk_limit(const Costs& costs, int threads, std::optional<double> stated) {
+  const double rate = stated.value_or(kWritingRate * threads);
+  const double needed = costs.written / (costs.cpu_seconds / threads);
+  if (needed <= rate) return {};
+  return {{"disk", "the limit: runs are made at " + bytes_text(needed) + "/s and written at " +
+                       bytes_text(rate) + (stated ? "/s (--disk-rate)" : "/s at most") +
+                       ", which takes about " + duration_text(costs.written / rate) +
+                       ": store fewer columns, or choose record.rate = scan"}};
+}
+
 /// Prints the overview of a study: title, time, size of the file, filters, runs.
-void print_summary(const Study& study, const StudyPlan& plan, const Costs& costs, int threads) {
+void print_summary(const Study& study, const StudyPlan& plan, const Costs& costs,
+                   const Arguments& arguments) {
+  const int threads = parallel_of(arguments).threads();
+  auto disk_rate = arguments.number("disk-rate", 1e-6, 1e9);
+  if (disk_rate) *disk_rate *= 1e6;
   const std::string part = plan.runs_here() == plan.runs ? "" : " of " + std::to_string(plan.runs);
   const std::string cells = std::to_string(plan.cells.size());
-  std::cout << wrapped(plan.title, output_width()) << "\n"
-            << listing({{"time", (study.until ? "at most " : "about ") +
-                                     duration_text(costs.cpu_seconds / threads) + " on " +
-                                     std::to_string(threads) + " threads (by a short trial)"},
-                        {"file", (study.until ? "at most " : "") + bytes_text(costs.disk)},
-                        {"filters", filters_of(study)},
-                        {"runs",
-                         std::to_string(plan.runs_here()) + part +
-                             (plan.cells.size() == 1 ? "" : " for each of " + cells + " cells")},
-                        {"memory", memory_text(costs.per_thread * threads + 3e7)}});
+  TextPairs items{
+      {"time", (study.until ? "at most " : "about ") + duration_text(costs.cpu_seconds / threads) +
+                   " on " + std::to_string(threads) + " threads (by a short trial)"},
+      {"file", (study.until ? "at most " : "") + bytes_text(costs.disk)},
+      {"filters", filters_of(study)},
+      {"runs", std::to_string(plan.runs_here()) + part +
+                   (plan.cells.size() == 1 ? "" : " for each of " + cells + " cells")},
+      {"memory", memory_text(costs.memory(threads))}};
+  for (auto& item : disk_limit(costs, threads, disk_rate)) items.push_back(std::move(item));
+  std::cout << wrapped(plan.title, output_width()) << "\n" << listing(items);
 }
 
 void print_details(const Study& study, const StudyPlan& plan) {
@@ -290,7 +346,7 @@ int check_command(const Arguments& arguments) {
     return kDone;
   }
   const Costs costs = costs_of(plan);
-  print_summary(study, plan, costs, parallel_of(arguments).threads());
+  print_summary(study, plan, costs, arguments);
   print_details(study, plan);
   print_cells(plan, costs.rows);
   return kDone;

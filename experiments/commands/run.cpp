@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/render/report.hpp"
-#include "analysis/render/tables/terminal.hpp"
-#include "analysis/study/study_analysis.hpp"
 #include "engine/errors.hpp"
 #include "engine/records/posix_file.hpp"
 #include "engine/records/result_file.hpp"
@@ -9,9 +7,9 @@
 #include "engine/runs/progress.hpp"
 #include "engine/text/number_text.hpp"
 #include "engine/text/visible_text.hpp"
-#include "engine/text/wrapped_text.hpp"
 #include "engine/threads/thread_budget.hpp"
 #include "experiments/commands/arguments.hpp"
+#include "experiments/commands/array_index.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/output_path.hpp"
 #include "experiments/commands/stored_result.hpp"
@@ -22,10 +20,6 @@
 
 namespace montecarta::experiments {
 namespace {
-
-/// [byte] Size of a result above which its verdict takes too long to compute after the run. Then
-/// the command that prints the verdict is printed instead.
-constexpr std::uintmax_t kLargestVerdict = 2'000'000'000;
 
 /// [s] Shortest time budget. With a budget of zero no run would ever be done, and a script that
 /// resumes would never end.
@@ -42,7 +36,9 @@ ProgressStyle progress_of(const Arguments& arguments) {
 std::string resuming_command(const Arguments& arguments) {
   std::string line = std::filesystem::read_symlink("/proc/self/exe").string() + " run";
   for (const std::string& word : arguments.words()) {
-    if (word != "--force" && word != "--resume") line += " " + shell_quoted(word);
+    if (word == "--force" || word == "--resume") continue;
+    const std::size_t value = word.starts_with("--shard=") ? word.find('=') + 1 : 0;
+    line += " " + shell_quoted(word.substr(0, value) + with_array_index(word.substr(value)));
   }
   return arguments.has("attempt") ? line : line + " --resume";
 }
@@ -111,18 +107,13 @@ std::string draw_report(const ResultFile& file, const std::filesystem::path& fol
 }
 
 void print_results(const RunOptions& options, const std::optional<std::filesystem::path>& report) {
-  if (std::filesystem::file_size(options.output) > kLargestVerdict) {
-    const std::string name = shell_quoted(options.output.string());
-    std::cout << "The verdict: montecarta analyze " << name << "\n";
-    if (report)
-      std::cout << "The report: montecarta report " << name << " -o "
-                << shell_quoted(report->string()) << "\n";
-    return;
+  const std::string name = options.output.string();
+  if (print_verdict(options.output, options.parallel)) {
+    print_where_to_look(name, report ? draw_report(ResultFile(name), *report, options) : "");
+  } else if (report) {
+    std::cout << "The report: montecarta report " << shell_quoted(name) << " -o "
+              << shell_quoted(report->string()) << "\n";
   }
-  const ResultFile file(options.output);
-  print_summary(std::cout, analyze(file, kUsualLevel, options.parallel), engine::output_width());
-  std::cout << std::flush;
-  print_where_to_look(options.output.string(), report ? draw_report(file, *report, options) : "");
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/commands/stored_result.hpp"
 
+#include "analysis/render/tables/terminal.hpp"
+#include "analysis/study/study_analysis.hpp"
 #include "engine/errors.hpp"
 #include "engine/records/fingerprint.hpp"
 #include "engine/records/posix_file.hpp"
@@ -8,6 +10,7 @@
 #include "engine/records/result_description.hpp"
 #include "engine/records/sum_groups.hpp"
 #include "engine/text/visible_text.hpp"
+#include "engine/text/wrapped_text.hpp"
 #include "experiments/judging/imported_plan.hpp"
 #include "experiments/recordings/recorded_drive.hpp"
 #include "experiments/study/known_filters.hpp"
@@ -24,6 +27,24 @@ ResultFile open_stored(const std::string& name) {
   if (is_there(name) || !is_there(part)) return ResultFile(name);
   std::cerr << "montecarta: " << name << " is unfinished; reading " << part.string() << "\n";
   return ResultFile(part);
+}
+
+namespace {
+
+/// [byte] Size of a result above which its verdict is not computed unasked.
+constexpr std::uintmax_t kLargestVerdict = 2'000'000'000;
+
+}  // namespace
+
+bool print_verdict(const std::filesystem::path& result, const Parallel& parallel) {
+  if (std::filesystem::file_size(result) > kLargestVerdict) {
+    std::cout << "The verdict: montecarta analyze " << shell_quoted(result.string()) << "\n";
+    return false;
+  }
+  const ResultFile file(result);
+  print_summary(std::cout, analyze(file, kUsualLevel, parallel), output_width());
+  std::cout << std::flush;
+  return true;
 }
 
 void print_where_to_look(const std::string& name, const std::string& page) {

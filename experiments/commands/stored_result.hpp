@@ -14,6 +14,10 @@ namespace montecarta::experiments {
 /// Opens FILE.h5, or FILE.h5.part if only unfinished work exists, with a note on standard error.
 ResultFile open_stored(const std::string& name);
 
+/// Prints the verdict of a result. If the file is so large that its analysis takes too long, prints
+/// the command that does it, and returns false.
+bool print_verdict(const std::filesystem::path& result, const Parallel& parallel);
+
 /// Prints where the report of a result file is and how to see more of the file. If `page` is empty,
 /// prints how to draw the report.
 void print_where_to_look(const std::string& name, const std::string& page);

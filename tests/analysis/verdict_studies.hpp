@@ -12,6 +12,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <span>
 #include <string>
@@ -22,12 +23,21 @@ namespace montecarta::analysis {
 /// Returns whether a whole table of rates is asked for, instead of a sample of its lines.
 inline bool is_table_wanted() { return std::getenv("MONTECARTA_STUDIES") != nullptr; }
 
-inline constexpr const char* kHowToGetTheTable = "of the whole table: set MONTECARTA_STUDIES=2000";
+/// The lines of a table that are tested: all, or those that are a sample of it.
+template <class Line, class IsSample>
+std::vector<Line> tested_lines(std::vector<Line> lines, const IsSample& is_sample) {
+  if (!is_table_wanted()) std::erase_if(lines, [&](const Line& line) { return !is_sample(line); });
+  return lines;
+}
 
 /// Number of studies that a line is simulated from: `usual`, or the value of MONTECARTA_STUDIES.
+/// Prints where the whole table is if this is a sample of it.
 inline std::uint64_t studies_of_a_line(std::uint64_t usual) {
   const char* const text = std::getenv("MONTECARTA_STUDIES");
-  return text == nullptr ? usual : std::stoull(text);
+  if (text != nullptr) return std::stoull(text);
+  std::printf(
+      "a sample: analysis/STATISTICS.md has the whole table as last simulated, and the command\n");
+  return usual;
 }
 
 /// Share of `studies` for which `is_so(study)` holds.

@@ -15,6 +15,7 @@ import subprocess
 import time
 from pathlib import Path
 
+STILL = 120  # [s] without any change, after which a test gives up
 NEEDED = ("munged", "slurmctld", "slurmd", "sbatch", "squeue", "scontrol", "h5diff")
 
 
@@ -27,15 +28,35 @@ def why_not():
     return None
 
 
-def wait_for(what, condition, seconds=60):
-    """The first true value of `condition`; an error that says `what` did not come in time."""
-    deadline = time.monotonic() + seconds
-    while time.monotonic() < deadline:
+def wait_for(what, condition, folder):
+    """The first true value of `condition`, as long as anything below `folder` changes.
+
+    So a loaded machine may take its time. An error that says `what` did not come if nothing has
+    changed for STILL seconds."""
+    seen, since = None, time.monotonic()
+    while True:
         found = condition()
         if found:
             return found
-        time.sleep(0.1)
-    raise TimeoutError(f"{what}: not within {seconds} s")
+        now = contents(folder)
+        if now != seen:
+            seen, since = now, time.monotonic()
+        elif time.monotonic() > since + STILL:
+            raise TimeoutError(f"{what}: did not come, and nothing has changed for {STILL} s")
+        time.sleep(0.25)
+
+
+def contents(folder):
+    """Names, sizes and times of all files below a folder: results, logs, those of Slurm too."""
+    found = []
+    for path, _, names in os.walk(folder):
+        for name in names:
+            try:
+                status = os.lstat(os.path.join(path, name))
+                found.append((path, name, status.st_size, status.st_mtime_ns))
+            except OSError:  # removed meanwhile
+                pass
+    return sorted(found)
 
 
 def free_ports(count):
@@ -87,13 +108,14 @@ SchedulerType=sched/backfill
 SchedulerParameters=sched_interval=1,sched_min_interval=1,bf_interval=1,bf_resolution=1
 PreemptType=preempt/partition_prio
 PreemptMode=REQUEUE
-SlurmdTimeout=5
-SlurmctldTimeout=10
-KillWait=2
+# Long enough that a loaded machine seems neither dead nor deaf to signals.
+SlurmdTimeout=20
+SlurmctldTimeout=30
+KillWait=60
 CompleteWait=0
 InactiveLimit=0
-MessageTimeout=5
-BatchStartTimeout=10
+MessageTimeout=15
+BatchStartTimeout=60
 JobRequeue=1
 MaxArraySize=101
 NodeName=DEFAULT CPUs=1 RealMemory=500 State=UNKNOWN
@@ -139,11 +161,12 @@ class PrivateSlurm:
                               f"--pid-file={self.folder}/munge.pid",
                               f"--log-file={self.folder}/log/munge", "--num-threads=2",
                               f"--seed-file={self.folder}/munge.seed"])
-        wait_for("munged", (self.folder / "munge.sock").exists, 10)
+        wait_for("munged", (self.folder / "munge.sock").exists, self.folder)
         self.start_controller("-c")
         for name in self.names:
             self.start_node(name)
-        wait_for("idle nodes", lambda: self.states().count("idle") == len(self.names), 30)
+        wait_for("idle nodes", lambda: self.states().count("idle") == len(self.names),
+                 self.folder)
 
     def start_controller(self, *options):
         self.start("slurmctld", ["slurmctld", "-D", *options, "-L", f"{self.folder}/log/slurmctld"])

@@ -8,13 +8,11 @@ import time
 from pathlib import Path
 
 import private_slurm
-from private_slurm import kill, wait_for
+from private_slurm import kill
 
 TOP = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(TOP / "cluster"))
 import shards as of_study  # noqa: E402  (what submit itself asks the scheduler)
-
-LIMIT = 120  # [s] for whatever a scenario waits for
 
 # A shard of six runs takes a second or more of one processor: long enough to be caught at work.
 STUDY = """[study]
@@ -63,6 +61,9 @@ class Case:
         return call([TOP / "cluster/submit", self.ground.study, "-o", self.folder, "--shards",
                      self.shards, "-p", self.partition, "--time=5", *more], code, **options)
 
+    def wait_for(self, what, condition):
+        return private_slurm.wait_for(f"{self.name}: {what}", condition, self.ground.folder)
+
     def status(self):
         return call([TOP / "cluster/status", self.folder])
 
@@ -108,19 +109,18 @@ class Case:
                     return pid, shard
                 kill(pid, signal.SIGCONT)
             return None
-        return wait_for(f"{self.name}: a task at work on {node}", found, LIMIT)
+        return self.wait_for(f"a task at work on {node}", found)
 
     def checkpointed(self, pid, shard):
         """Lets a frozen task hear the SIGTERM that is due, and waits for its checkpoint."""
-        wait_for(f"{self.name}: SIGTERM",
-                 lambda: private_slurm.is_pending(pid, signal.SIGTERM), LIMIT)
+        self.wait_for("SIGTERM", lambda: private_slurm.is_pending(pid, signal.SIGTERM))
         if private_slurm.is_alive(pid):  # Slurm may have woken it up itself
             began = time.monotonic()
             kill(pid, signal.SIGCONT)
-            wait_for(f"{self.name}: an end", lambda: not private_slurm.is_alive(pid), LIMIT)
+            self.wait_for("an end", lambda: not private_slurm.is_alive(pid))
             self.ground.stopped_in.append(time.monotonic() - began)
-        wait_for(f"{self.name}: a checkpoint",
-                 lambda: "task: checkpoint" in self.log(f"shard_{shard:04d}.log"), LIMIT)
+        self.wait_for("a checkpoint",
+                      lambda: "task: checkpoint" in self.log(f"shard_{shard:04d}.log"))
 
     def at_rest(self):
         """Whether the scheduler has nothing more to do here, or put aside what it had."""
@@ -131,7 +131,7 @@ class Case:
 
     def idle(self):
         try:
-            wait_for(f"{self.name}: an end", self.at_rest, LIMIT)
+            self.wait_for("an end", self.at_rest)
         except TimeoutError as error:
             raise TimeoutError(f"{error}: {self.tasks()}, nodes "
                                f"{self.ground.slurm.states()}") from None

@@ -101,12 +101,12 @@ DriveRates drive_rates(Shape shape, std::size_t dimension, double memory, double
   return rates;
 }
 
-class SlowDriveRates : public ::testing::TestWithParam<std::tuple<Shape, std::size_t>> {};
+using ShapeAndComponents = std::tuple<Shape, std::size_t>;
+
+class SlowDriveRates : public ::testing::TestWithParam<ShapeAndComponents> {};
 
 TEST_P(SlowDriveRates, RejectAConsistentFilterInFivePercentOfDrivesAtMost) {
   const auto [shape, dimension] = GetParam();
-  const bool is_sample = dimension == 3 || shape == Shape::one_memory;
-  if (!is_sample && !is_table_wanted()) GTEST_SKIP() << kHowToGetTheTable;
   const std::uint64_t drives = studies_of_a_line(400);
   std::printf(
       "%s, %d components\nmemory [s]  rejected [%%]  above  below  by as many independent "
@@ -127,11 +127,19 @@ TEST_P(SlowDriveRates, RejectAConsistentFilterInFivePercentOfDrivesAtMost) {
   }
 }
 
+std::vector<ShapeAndComponents> tested_shapes() {
+  std::vector<ShapeAndComponents> all;
+  for (const Shape shape :
+       {Shape::one_memory, Shape::two_memories, Shape::swings, Shape::one_slow_only}) {
+    for (const std::size_t dimension : {1U, 2U, 3U}) all.emplace_back(shape, dimension);
+  }
+  return tested_lines(std::move(all), [](const ShapeAndComponents& line) {
+    return std::get<1>(line) == 3 || std::get<0>(line) == Shape::one_memory;
+  });
+}
+
 INSTANTIATE_TEST_SUITE_P(OfShapesAndComponents, SlowDriveRates,
-                         ::testing::Combine(::testing::Values(Shape::one_memory,
-                                                              Shape::two_memories, Shape::swings,
-                                                              Shape::one_slow_only),
-                                            ::testing::Values(1U, 2U, 3U)));
+                         ::testing::ValuesIn(tested_shapes()));
 
 class SlowDrivePower : public ::testing::TestWithParam<std::size_t> {};
 
@@ -195,13 +203,13 @@ RatesOfDrives rates_of_drives(std::size_t drives, std::size_t dimension, double 
   return rates;
 }
 
-class SlowSeveralDrives
-    : public ::testing::TestWithParam<std::tuple<std::size_t, std::size_t, double>> {};
+/// Number of drives and of components, and the slow part of the errors.
+using DrivesLine = std::tuple<std::size_t, std::size_t, double>;
+
+class SlowSeveralDrives : public ::testing::TestWithParam<DrivesLine> {};
 
 TEST_P(SlowSeveralDrives, RejectAConsistentFilterInFivePercentOfStudiesAtMost) {
   const auto [drives, dimension, slow] = GetParam();
-  const bool is_sample = drives < 20 && dimension == 3 && slow == 1.0;
-  if (!is_sample && !is_table_wanted()) GTEST_SKIP() << kHowToGetTheTable;
   const std::uint64_t studies = studies_of_a_line(200);
   std::printf("%d drives, %d components, slow part %.1f\nmemory  above [%%]  below  upper/lower\n",
               static_cast<int>(drives), static_cast<int>(dimension), slow);
@@ -214,10 +222,20 @@ TEST_P(SlowSeveralDrives, RejectAConsistentFilterInFivePercentOfStudiesAtMost) {
   }
 }
 
+std::vector<DrivesLine> tested_drives() {
+  std::vector<DrivesLine> all;
+  for (const std::size_t drives : {2U, 5U, 20U}) {
+    for (const std::size_t dimension : {1U, 3U}) {
+      for (const double slow : {0.5, 1.0}) all.emplace_back(drives, dimension, slow);
+    }
+  }
+  return tested_lines(std::move(all), [](const DrivesLine& line) {
+    return std::get<0>(line) < 20 && std::get<1>(line) == 3 && std::get<2>(line) == 1.0;
+  });
+}
+
 INSTANTIATE_TEST_SUITE_P(OfDrivesAndComponents, SlowSeveralDrives,
-                         ::testing::Combine(::testing::Values(2U, 5U, 20U),
-                                            ::testing::Values(1U, 3U),
-                                            ::testing::Values(0.5, 1.0)));
+                         ::testing::ValuesIn(tested_drives()));
 
 // Errors that last for a whole drive make one drive silent, and twenty not.
 TEST(SlowSeveralDrivesPower, ManyDrivesFindWhatOneCannot) {

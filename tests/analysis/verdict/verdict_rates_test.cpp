@@ -47,7 +47,6 @@ class SlowVerdictRates : public testing::TestWithParam<Setting> {};
 // A filter with Gaussian errors of its covariance is rejected in at most 5 % of studies.
 TEST_P(SlowVerdictRates, AccuseAConsistentFilterInAtMostFivePercent) {
   const Setting& setting = GetParam();
-  if (!setting.is_sample && !is_table_wanted()) GTEST_SKIP() << kHowToGetTheTable;
   const std::uint64_t studies = studies_of_a_line(200);
   for (const Memory memory : kMemories) {
     const double accused =
@@ -56,20 +55,31 @@ TEST_P(SlowVerdictRates, AccuseAConsistentFilterInAtMostFivePercent) {
   }
 }
 
+/// For SlowVerdictRates and SlowVerdictTails.
+std::vector<Setting> tested_settings(std::vector<Setting> settings) {
+  return tested_lines(std::move(settings),
+                      [](const Setting& setting) { return setting.is_sample; });
+}
+
 INSTANTIATE_TEST_SUITE_P(Of, SlowVerdictRates,
-                         testing::Values(Setting{3, 100, 3}, Setting{5, 64, 3, true},
-                                         Setting{8, 64, 3}, Setting{10, 100, 1}, Setting{20, 20, 1},
-                                         Setting{20, 100, 3, true}, Setting{20, 100, 6},
-                                         Setting{20, 64, 15}, Setting{50, 64, 3},
-                                         Setting{50, 1000, 2}, Setting{200, 64, 3},
-                                         Setting{1000, 20, 3}));
+                         testing::ValuesIn(tested_settings({{3, 100, 3},
+                                                            {5, 64, 3, true},
+                                                            {8, 64, 3},
+                                                            {10, 100, 1},
+                                                            {20, 20, 1},
+                                                            {20, 100, 3, true},
+                                                            {20, 100, 6},
+                                                            {20, 64, 15},
+                                                            {50, 64, 3},
+                                                            {50, 1000, 2},
+                                                            {200, 64, 3},
+                                                            {1000, 20, 3}})));
 
 class SlowVerdictTails : public testing::TestWithParam<Setting> {};
 
 // So is a filter with errors of its covariance that are not Gaussian.
 TEST_P(SlowVerdictTails, AccuseNoCovarianceOfErrorsThatAreNotGaussian) {
   const Setting& setting = GetParam();
-  if (!setting.is_sample && !is_table_wanted()) GTEST_SKIP() << kHowToGetTheTable;
   const std::uint64_t studies = studies_of_a_line(200);
   for (const Noise noise : kNoises) {
     for (const Memory memory : {Memory::white, Memory::ar95, Memory::constant}) {
@@ -81,10 +91,10 @@ TEST_P(SlowVerdictTails, AccuseNoCovarianceOfErrorsThatAreNotGaussian) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, SlowVerdictTails,
-                         testing::Values(Setting{8, 64, 3}, Setting{20, 64, 3, true},
-                                         Setting{50, 64, 3}, Setting{200, 64, 3},
-                                         Setting{50, 64, 1}));
+INSTANTIATE_TEST_SUITE_P(
+    Of, SlowVerdictTails,
+    testing::ValuesIn(
+        tested_settings({{8, 64, 3}, {20, 64, 3, true}, {50, 64, 3}, {200, 64, 3}, {50, 64, 1}})));
 
 // Heavy tails are named, and those of a Gaussian are not.
 TEST(SlowVerdictTails, NamesThem) {
@@ -121,7 +131,6 @@ class SlowVerdictMargin : public testing::TestWithParam<MarginCase> {};
 
 TEST_P(SlowVerdictMargin, IsCalledConsistentSeldom) {
   const MarginCase& one = GetParam();
-  if (!one.is_sample && !is_table_wanted()) GTEST_SKIP() << kHowToGetTheTable;
   const std::uint64_t studies = studies_of_a_line(200);
   double consistent = 0.0, wrong_side = 0.0, refused = 0.0, covered = 0.0;
   const auto share = 1.0 / static_cast<double>(studies);
@@ -154,45 +163,51 @@ TEST_P(SlowVerdictMargin, IsCalledConsistentSeldom) {
 
 INSTANTIATE_TEST_SUITE_P(
     Of, SlowVerdictMargin,
-    testing::Values(
-        MarginCase{"size", {.memory = Memory::ar95, .ratio = 1.3}},
-        MarginCase{"small size", {.memory = Memory::ar95, .ratio = 1 / 1.3}},
-        MarginCase{"component", {.memory = Memory::ar95, .by_component = {1.0, 1.0, 1.3}}},
-        MarginCase{"stretch", {.memory = Memory::ar95, .first_half = 1.3}},
-        MarginCase{"bias", {.memory = Memory::ar95, .covered_bias = std::sqrt(0.3 / 0.7)}},
-        MarginCase{"correlation", {.memory = Memory::ar95, .correlation = 0.3}},
-        MarginCase{
-            "own scales 0.3, white", {.dimension = 1, .ratio = 1.2, .log_scale = 0.3}, 49, 1.2, 16},
-        MarginCase{"own scales 0.83, constant",
-                   {.dimension = 1, .memory = Memory::constant, .ratio = 1.5, .log_scale = 0.83},
-                   25,
-                   1.5,
-                   16},
-        MarginCase{"own scales 0.83, white",
-                   {.dimension = 1, .ratio = 2.0, .log_scale = 0.83},
-                   100,
-                   2.0,
-                   16},
-        MarginCase{"own scales 0.6, small",
-                   {.memory = Memory::ar95, .ratio = 0.5, .log_scale = 0.6},
-                   100,
-                   2.0,
-                   64,
-                   false},
-        MarginCase{"own scales 0.83, white, 3",
-                   {.memory = Memory::white, .ratio = 2.0, .log_scale = 0.83},
-                   25,
-                   2.0,
-                   64,
-                   false},
-        MarginCase{"own scales 0.1, AR(1) 0.95",
-                   {.memory = Memory::ar95, .ratio = 1.1, .log_scale = 0.1},
-                   500,
-                   1.1,
-                   64,
-                   false},
-        MarginCase{
-            "own scales 0.3, white, 3", {.ratio = 1.1, .log_scale = 0.3}, 500, 1.1, 64, false}));
+    testing::ValuesIn(tested_lines(
+        std::vector{
+            MarginCase{"size", {.memory = Memory::ar95, .ratio = 1.3}},
+            MarginCase{"small size", {.memory = Memory::ar95, .ratio = 1 / 1.3}},
+            MarginCase{"component", {.memory = Memory::ar95, .by_component = {1.0, 1.0, 1.3}}},
+            MarginCase{"stretch", {.memory = Memory::ar95, .first_half = 1.3}},
+            MarginCase{"bias", {.memory = Memory::ar95, .covered_bias = std::sqrt(0.3 / 0.7)}},
+            MarginCase{"correlation", {.memory = Memory::ar95, .correlation = 0.3}},
+            MarginCase{"own scales 0.3, white",
+                       {.dimension = 1, .ratio = 1.2, .log_scale = 0.3},
+                       49,
+                       1.2,
+                       16},
+            MarginCase{
+                "own scales 0.83, constant",
+                {.dimension = 1, .memory = Memory::constant, .ratio = 1.5, .log_scale = 0.83},
+                25,
+                1.5,
+                16},
+            MarginCase{"own scales 0.83, white",
+                       {.dimension = 1, .ratio = 2.0, .log_scale = 0.83},
+                       100,
+                       2.0,
+                       16},
+            MarginCase{"own scales 0.6, small",
+                       {.memory = Memory::ar95, .ratio = 0.5, .log_scale = 0.6},
+                       100,
+                       2.0,
+                       64,
+                       false},
+            MarginCase{"own scales 0.83, white, 3",
+                       {.memory = Memory::white, .ratio = 2.0, .log_scale = 0.83},
+                       25,
+                       2.0,
+                       64,
+                       false},
+            MarginCase{"own scales 0.1, AR(1) 0.95",
+                       {.memory = Memory::ar95, .ratio = 1.1, .log_scale = 0.1},
+                       500,
+                       1.1,
+                       64,
+                       false},
+            MarginCase{
+                "own scales 0.3, white, 3", {.ratio = 1.1, .log_scale = 0.3}, 500, 1.1, 64, false}},
+        [](const MarginCase& one) { return one.is_sample; })));
 
 // A true ratio of 1.1 is neither refused nor called consistent within 1.2 by mistake.
 TEST(SlowVerdictMargin, IsRefusedSeldomInside) {

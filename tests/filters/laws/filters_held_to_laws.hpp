@@ -24,6 +24,14 @@ inline std::vector<FilterKind> filters_held_to_laws() {
   return {kinds.begin(), kinds.end()};
 }
 
+/// Those of them for which `condition(kind)` holds.
+template <class Condition>
+std::vector<FilterKind> filters_held_to_laws(const Condition& condition) {
+  std::vector<FilterKind> kinds = filters_held_to_laws();
+  std::erase_if(kinds, [&](const FilterKind& kind) { return !condition(kind); });
+  return kinds;
+}
+
 /// Returns whether a filter takes this sensor, as it is mounted.
 inline bool takes(const FilterKind& kind, const Sensor& sensor) {
   if (kind.sensors.empty()) return true;

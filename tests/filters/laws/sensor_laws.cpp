@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -25,10 +26,12 @@ struct Offered {
 };
 void PrintTo(const Offered& offered, std::ostream* out) { *out << offered.name(); }
 
-/// Each sensor but the default at the pose, of which other tests are full.
-std::vector<Offered> all_offered() {
+/// Each sensor but the default at the pose, of which other tests are full, with each filter for
+/// which `condition(kind)` holds.
+template <class Condition>
+std::vector<Offered> offered_to(const Condition& condition) {
   std::vector<Offered> all;
-  for (const FilterKind& kind : filters_held_to_laws()) {
+  for (const FilterKind& kind : filters_held_to_laws(condition)) {
     for (const SomeSensor& sensor : some_sensors()) {
       if (!takes(kind, sensor.sensor) || sensor.name == RangeBearingSensor::kName) continue;
       all.push_back({kind, sensor});
@@ -117,23 +120,24 @@ void EveryFilterAndSensor::expect_map_near_the_truth(const SmallWorldSettings& s
   EXPECT_NEAR(nis / dof, 1.0, 5.0 * std::sqrt(2.0 / dof));
 }
 
-TEST_P(EveryFilterAndSensor, BuildsAMapNearTheTruthAndCountsItsInnovations) {
-  if (!kind().reports.map) GTEST_SKIP() << "no map";
+class EveryMapAndSensor : public EveryFilterAndSensor {};
+class EveryJointFilterAndSensor : public EveryFilterAndSensor {};
+class EveryParticleFilterAndSensor : public EveryFilterAndSensor {};
+
+TEST_P(EveryMapAndSensor, BuildsAMapNearTheTruthAndCountsItsInnovations) {
   on_vehicles(3, 120, [&](const auto& settings) { expect_map_near_the_truth(settings); });
 }
 
 /// The law is of joint filters, since particles run out of diversity. The band has five standard
 /// errors.
-TEST_P(EveryFilterAndSensor, SlowIsConsistentOnAnEasyWorld) {
-  if (kind().reports.particles) GTEST_SKIP() << "no joint covariance";
+TEST_P(EveryJointFilterAndSensor, SlowIsConsistentOnAnEasyWorld) {
   constexpr std::uint64_t kRuns = 60;
   on_vehicles(100, 60, [&](const SmallWorldSettings& settings) {
     EXPECT_TRUE(is_consistent(final_errors(*make(settings), settings, kRuns).anees, kRuns));
   });
 }
 
-TEST_P(EveryFilterAndSensor, SlowErrsByLessThanTwiceTheKalmanFilterOnAnEasyWorld) {
-  if (!kind().reports.particles) GTEST_SKIP() << "is one, or has no map";
+TEST_P(EveryParticleFilterAndSensor, SlowErrsByLessThanTwiceTheKalmanFilterOnAnEasyWorld) {
   constexpr std::uint64_t kRuns = 60;
   const auto kalman = std::ranges::find(filter_kinds(), "ekf_slam", &FilterKind::name);
   on_vehicles(100, 60, [&](const SmallWorldSettings& settings) {
@@ -143,8 +147,25 @@ TEST_P(EveryFilterAndSensor, SlowErrsByLessThanTwiceTheKalmanFilterOnAnEasyWorld
   });
 }
 
-INSTANTIATE_TEST_SUITE_P(All, EveryFilterAndSensor, testing::ValuesIn(all_offered()),
-                         [](const auto& instance) { return instance.param.name(); });
+bool is_any(const FilterKind& /*kind*/) { return true; }
+bool has_map(const FilterKind& kind) { return kind.reports.map; }
+bool has_particles(const FilterKind& kind) { return kind.reports.particles; }
+
+/// Name of a test by what is offered.
+struct OfferedName {
+  std::string operator()(const testing::TestParamInfo<Offered>& instance) const {
+    return instance.param.name();
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(All, EveryFilterAndSensor, testing::ValuesIn(offered_to(is_any)),
+                         OfferedName());
+INSTANTIATE_TEST_SUITE_P(All, EveryMapAndSensor, testing::ValuesIn(offered_to(has_map)),
+                         OfferedName());
+INSTANTIATE_TEST_SUITE_P(All, EveryJointFilterAndSensor,
+                         testing::ValuesIn(offered_to(std::not_fn(has_particles))), OfferedName());
+INSTANTIATE_TEST_SUITE_P(All, EveryParticleFilterAndSensor,
+                         testing::ValuesIn(offered_to(has_particles)), OfferedName());
 
 }  // namespace
 }  // namespace montecarta::filters

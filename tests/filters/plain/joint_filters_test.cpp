@@ -107,8 +107,10 @@ TEST_P(PlainJointFilter, EqualsTheFastFilterThatAssociatesNearestNeighbours) {
   EXPECT_GE(both.fast->report().map_size, 21.0);
 }
 
-TEST_P(PlainJointFilter, EqualsTheFastFilterInAKnownMap) {
-  if (!kind_named(GetParam()).takes_prior) GTEST_SKIP() << "it cannot be given a map";
+/// The filters that can be given a map.
+class PlainLocalisation : public PlainJointFilter {};
+
+TEST_P(PlainLocalisation, EqualsTheFastFilterInAKnownMap) {
   const SmallWorldSettings settings{.seed = 9, .scans = 100, .noise = rough()};
   for (const auto association : {Association::known, Association::nearest}) {
     for (const double landmark : {0.0, 0.3}) {
@@ -120,8 +122,10 @@ TEST_P(PlainJointFilter, EqualsTheFastFilterInAKnownMap) {
   }
 }
 
-TEST_P(PlainJointFilter, EqualsTheFastFilterWithFixes) {
-  if (!kind_named(GetParam()).takes_fixes) GTEST_SKIP() << "it takes no fixes";
+/// The filters that take fixes of the position.
+class PlainFilterWithFixes : public PlainJointFilter {};
+
+TEST_P(PlainFilterWithFixes, EqualsTheFastFilterWithFixes) {
   Belief noise = rough();
   noise.sigma_fix = 0.5;
   const SmallWorldSettings settings{.seed = 10, .scans = 150, .noise = noise};
@@ -161,8 +165,23 @@ TEST_P(PlainJointFilter, EqualsTheFastFilterOfAVehicleThatStopsAndGoes) {
   compared({.seed = 8, .scans = 120, .noise = noise, .controls = {{3.0, 0.15}, {0.0, 0.15}}});
 }
 
-INSTANTIATE_TEST_SUITE_P(All, PlainJointFilter,
-                         testing::Values("ekf_slam", "riekf_slam", "fej_ekf_slam", "oc_ekf_slam"),
+std::vector<std::string> plain_joint_filters() {
+  return {"ekf_slam", "riekf_slam", "fej_ekf_slam", "oc_ekf_slam"};
+}
+
+std::vector<std::string> plain_filters_that_take(bool FilterKind::*what) {
+  std::vector<std::string> names = plain_joint_filters();
+  std::erase_if(names, [what](const std::string& name) { return !(kind_named(name).*what); });
+  return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, PlainJointFilter, testing::ValuesIn(plain_joint_filters()),
+                         [](const auto& instance) { return instance.param; });
+INSTANTIATE_TEST_SUITE_P(All, PlainLocalisation,
+                         testing::ValuesIn(plain_filters_that_take(&FilterKind::takes_prior)),
+                         [](const auto& instance) { return instance.param; });
+INSTANTIATE_TEST_SUITE_P(All, PlainFilterWithFixes,
+                         testing::ValuesIn(plain_filters_that_take(&FilterKind::takes_fixes)),
                          [](const auto& instance) { return instance.param; });
 
 }  // namespace

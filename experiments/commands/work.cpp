@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/errors.hpp"
+#include "engine/records/merge.hpp"
+#include "engine/records/posix_file.hpp"
+#include "engine/runs/monte_carlo.hpp"
+#include "engine/text/number_text.hpp"
+#include "experiments/commands/arguments.hpp"
+#include "experiments/commands/commands.hpp"
+#include "experiments/commands/shard_folder.hpp"
+#include "experiments/commands/stored_result.hpp"
+#include "experiments/commands/summed_study.hpp"
+#include "experiments/commands/work_claim.hpp"
+#include "experiments/study/make_plan.hpp"
+#include "experiments/text/words.hpp"
+
+#include <algorithm>
+#include <iostream>
+#include <memory>
+
+namespace montecarta::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// [s] Time without a sign of life after which a worker counts as dead. Network file systems show a
+/// change after a few seconds, and at most after a minute.
+constexpr double kPatience = 60.0;
+
+/// What one worker does, and in which folder.
+struct Worker {
+  const Arguments& arguments;
+  ShardFolder folder;
+  Study study;
+  Stopwatch stopwatch = {};
+
+  double patience() const { return arguments.number("patience", 0.1, 1e6).value_or(kPatience); }
+  void say(const std::string& line) const {
+    if (!arguments.has("quiet")) std::cerr << "montecarta: " << line << "\n";
+  }
+};
+
+/// The values of --set that the resolved study does not contain: the path of a recorded drive.
+std::vector<std::string> settings_to_keep(const Arguments& arguments) {
+  std::vector<std::string> kept;
+  for (const std::string& setting : arguments.texts("set")) {
+    const std::size_t sign = std::min(setting.find('='), setting.size() - 1);
+    if (trimmed(setting.substr(0, sign)) != "scenario.path") continue;
+    const fs::path path = trimmed(setting.substr(sign + 1));
+    kept.push_back("scenario.path=" + fs::absolute(path).string());
+  }
+  return kept;
+}
+
+/// Throws StudyError unless the runs of a study can be divided into so many shards.
+void require_shards(const Study& study, std::uint64_t shards) {
+  const bool in_groups = study.settings.lists("record", "columns", "sums");
+  const std::uint64_t runs = study.settings.count("study", "runs");
+  const std::uint64_t unit = in_groups ? kRunsOfAGroup : 1;
+  const std::uint64_t most = (runs + unit - 1) / unit;
+  if (shards <= most) return;
+  throw StudyError("--shards " + std::to_string(shards) + ": not usable (a shard holds at least " +
+                   (in_groups ? "one group of " + std::to_string(unit) + " runs" : "one run") +
+                   " of the study's " + std::to_string(runs) + "): choose 1 to " +
+                   std::to_string(most));
+}
+
+StudyPlan plan_of_shard(const Study& study, std::uint64_t index, std::uint64_t shards,
+                        ExternalPrograms programs) {
+  const std::string part = std::to_string(index) + "/" + std::to_string(shards);
+  return make_plan(study, shard_of(study.settings, part), programs);
+}
+
+/// Opens the folder, after making it if it has no plan yet.
+ShardFolder folder_of(const Arguments& arguments) {
+  const fs::path folder = fs::absolute(arguments.operands().front());
+  const auto named = arguments.text("study");
+  const auto shards = arguments.count("shards", 1, 1'000'000);
+  if (named.has_value() != shards.has_value()) {
+    throw StudyError(std::string(named ? "--study without --shards" : "--shards without --study") +
+                     ": a folder is made of both: add the other, or leave both out if the folder "
+                     "has a plan");
+  }
+  if (!named) return ShardFolder(folder);
+  const Study study = study_named(*named, arguments.texts("set"));
+  require_shards(study, *shards);
+  const StudyPlan plan = plan_of_shard(study, 0, *shards, programs_of(study, arguments));
+  return ShardFolder::make(folder, study,
+                           {.runs = plan.runs,
+                            .cells = plan.cells.size(),
+                            .shards = *shards,
+                            .program = fs::read_symlink("/proc/self/exe").string(),
+                            .settings = settings_to_keep(arguments)});
+}
+
+RunOptions options_of(const Worker& worker, const fs::path& shard) {
+  const Arguments& arguments = worker.arguments;
+  RunOptions options;
+  options.output = shard;
+  options.parallel = parallel_of(arguments);
+  options.attempt = true;
+  options.time_budget = arguments.number("time-budget", 0.001, 1e9);
+  if (options.time_budget)
+    *options.time_budget = std::max(0.001, *options.time_budget - worker.stopwatch.seconds());
+  options.progress = ProgressStyle::none;
+  options.quiet = arguments.has("quiet");
+  options.provenance = provenance_of("work", arguments);
+  return options;
+}
+
+/// Computes a shard. Returns 0, or the exit code of a process that was stopped at a checkpoint.
+int compute(const Worker& worker, WorkClaim& claim) {
+  const std::uint64_t index = worker.folder.index_of(claim.file());
+  const StudyPlan plan = plan_of_shard(worker.study, index, worker.folder.plan().shards,
+                                       programs_of(worker.study, worker.arguments));
+  const RunOptions options = options_of(worker, claim.file());
+  const RunOutcome outcome =
+      plan.columns.sums ? run_summed_study(plan, options) : run_study(plan, options);
+  const std::string name =
+      "shard " + std::to_string(index) + " of " + std::to_string(worker.folder.plan().shards);
+  if (outcome.counts.missing > 0) {
+    worker.say(name + ": stopped at a checkpoint, from which any worker continues");
+    claim.leave();
+    return exit_code(outcome, runs_under_scheduler());
+  }
+  worker.say(name + ": " + std::to_string(outcome.runs_here) + " runs in " +
+             duration_text(outcome.seconds) +
+             (outcome.counts.failed == 0 ? ""
+                                         : ", " + std::to_string(outcome.counts.failed) +
+                                               " failed, which are results too"));
+  return kDone;
+}
+
+void merge_shards(const Worker& worker) {
+  const MergeSummary summary = merge_attempt(worker.folder.result(), worker.folder.shards());
+  for (const std::string& note : summary.notes) worker.say(note);
+  worker.say(std::to_string(worker.folder.plan().shards) + " shards merged to " +
+             worker.folder.result().string());
+}
+
+/// Claims one of the missing files; nullptr if living workers make them, or nobody may.
+std::unique_ptr<WorkClaim> claim_one(const Worker& worker, const std::vector<fs::path>& missing) {
+  const double patience = worker.patience();
+  if (auto claim = claim_free(missing, patience)) return claim;
+  worker.say("no shard is free; looking for at most " + duration_text(patience) +
+             " whether the workers of the others are alive");
+  return claim_lost(missing, patience);
+}
+
+/// Makes a file that is claimed, and removes the claims on it. Returns as compute() does.
+int make_claimed(const Worker& worker, std::unique_ptr<WorkClaim> claim) {
+  const fs::path file = claim->file();
+  int code = kDone;
+  try {
+    if (!is_there(file)) {  // else it was finished while this worker claimed it
+      if (file == worker.folder.result()) {
+        merge_shards(worker);
+      } else {
+        code = compute(worker, *claim);
+      }
+    }
+  } catch (const std::exception& error) {
+    claim->fail(error.what());
+    throw;
+  }
+  claim.reset();
+  if (code == kDone) remove_claims(file);
+  return code;
+}
+
+/// Says why this worker has nothing to do. Throws RunError if files are left that nobody makes.
+void explain_idleness(const Worker& worker, const std::vector<fs::path>& missing) {
+  std::string given_up;
+  for (const fs::path& file : missing) {
+    const ClaimState state = claims_on(file);
+    if (state.losses + (state.is_free() ? 0 : 1) < kMostLosses) continue;
+    given_up += "\n  " + file.string() + ".claim.*: " + std::string(trimmed(state.text));
+  }
+  if (!given_up.empty()) {
+    throw RunError(worker.folder.result().parent_path().string() + ": " +
+                   std::to_string(kMostLosses) +
+                   " workers were lost or failed over one file (it would end all workers one by "
+                   "one): remove the cause and these files, then start work again:" +
+                   given_up);
+  }
+  worker.say("nothing to do: other workers are at " + std::to_string(missing.size()) +
+             " files; the last one merges. If they are ended, the same command continues");
+}
+
+/// Whether all shards were finished since `before` was found missing, or the result is there.
+bool is_further(const ShardFolder& folder, const std::vector<fs::path>& before) {
+  const std::vector<fs::path> now = folder.missing();
+  return now.empty() || (now.front() == folder.result() && before.front() != folder.result());
+}
+
+}  // namespace
+
+int work_command(const Arguments& arguments) {
+  ShardFolder folder = folder_of(arguments);
+  Study study = folder.study();
+  const Worker worker{arguments, std::move(folder), std::move(study)};
+  programs_of(worker.study, arguments);
+  const fs::path result = worker.folder.result();
+  bool has_merged = false;
+  for (auto missing = worker.folder.missing(); !missing.empty();
+       missing = worker.folder.missing()) {
+    if (auto claim = claim_one(worker, missing)) {
+      has_merged = claim->file() == result;
+      const int code = make_claimed(worker, std::move(claim));
+      if (code != kDone) return code;
+    } else if (!is_further(worker.folder, missing)) {
+      explain_idleness(worker, missing);
+      return kDone;
+    }
+  }
+  if (has_merged && !arguments.has("quiet") && print_verdict(result, parallel_of(arguments)))
+    print_where_to_look(result.string(), "");
+  worker.say("complete: all " + std::to_string(worker.folder.plan().runs) + " runs are in " +
+             result.string());
+  return kDone;
+}
+
+}  // namespace montecarta::experiments
