@@ -128,8 +128,7 @@ int tune_command(const Arguments& arguments) {
   const StudyPlan plan = make_plan(confirming);
   const PassingFolder passing;
   if (!result.has_truth) {
-    const double within = study.settings.number("study", "within");
-    print_findings(result, confirm_on_drives(plan, within, parallel), confirming.cells.back());
+    print_findings(result, confirm_on_drives(confirming, plan, parallel), confirming.cells.back());
   } else {
     if (folder) make_directory(*folder);
     TuningConfirmation confirmation = confirm_on_runs(plan, parallel);

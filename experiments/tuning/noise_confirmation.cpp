@@ -10,7 +10,8 @@
 #include "engine/text/number_text.hpp"
 #include "experiments/study/make_plan.hpp"
 #include "experiments/tuning/filter_on_drive.hpp"
-#include "experiments/tuning/noise_landscape.hpp"
+#include "experiments/tuning/noise_factors.hpp"
+#include "experiments/tuning/scores.hpp"
 
 #include <algorithm>
 #include <array>
@@ -52,13 +53,13 @@ ConfirmedRun confirmed_run(const StudyPlan& plan, std::uint64_t run, const Drive
                                    [&](std::size_t scan, const SlamFilter& now, bool /*is_given*/) {
                                      const PoseEstimate estimate = now.estimate();
                                      const Pose& truth = drive.truth[itinerary.scan_step[scan]];
-                                     const double one = log_score_of(estimate, truth);
+                                     const double one = pose_score(estimate, truth);
                                      if (!std::isnan(one)) score.add(one);
                                      last = nees_of(estimate, truth);
                                      largest = std::max(largest, last);
                                    });
   if (!is_whole) return {};
-  return {score.sum / score.n, last, largest};
+  return {score.mean(), last, largest};
 }
 
 ScoreDifference mean_difference(const std::vector<double>& differences) {
@@ -79,7 +80,7 @@ struct SecondHalf {
 };
 
 SecondHalf second_half(const StudyPlan& plan, std::uint64_t run, const Drive& drive,
-                       const Cell& cell) {
+                       const Cell& cell, const InnovationScore& score) {
   const Itinerary& itinerary = plan.drives->itinerary_of(run);
   const std::size_t scans = itinerary.scans(), half = scans / 2;
   SecondHalf found;
@@ -90,7 +91,7 @@ SecondHalf second_half(const StudyPlan& plan, std::uint64_t run, const Drive& dr
                    if (scan < half) return;
                    const ScanReport& report = now.report();
                    found.scores[(scan - half) * kStretchesToConfirm / (scans - half)].add(
-                       -report.log_likelihood);
+                       score(report, drive.scan(scan)));
                    found.times.push_back(itinerary.step_time[itinerary.scan_step[scan]]);
                    found.nis.push_back(report.nis);
                    found.dof.push_back(report.nis_dof);
@@ -104,8 +105,7 @@ void add_differences(const SecondHalf& before, const SecondHalf& after,
   for (std::size_t k = 0; k < kStretchesToConfirm; ++k) {
     const ScoreSum &old_score = before.scores[k], &new_score = after.scores[k];
     const bool is_there = before.is_whole && after.is_whole && new_score.n > 0.0;
-    differences.push_back(is_there ? old_score.sum / old_score.n - new_score.sum / new_score.n
-                                   : kNaN);
+    differences.push_back(is_there ? old_score.mean() - new_score.mean() : kNaN);
   }
 }
 
@@ -171,7 +171,7 @@ TuningConfirmation confirm_on_runs(const StudyPlan& plan, const Parallel& parall
           .covering_path = conformal_bound(of_path, kUsualLevel) / quantile};
 }
 
-TuningConfirmation confirm_on_drives(const StudyPlan& plan, double within,
+TuningConfirmation confirm_on_drives(const Study& study, const StudyPlan& plan,
                                      const Parallel& parallel) {
   const std::size_t drives = std::max<std::size_t>(plan.drives->own_drives(), 1);
   std::vector<std::array<SecondHalf, 2>> halves(drives);
@@ -179,7 +179,8 @@ TuningConfirmation confirm_on_drives(const StudyPlan& plan, double within,
     Drive drive;
     plan.drives->generate(run, drive);
     for (std::size_t cell = 0; cell < 2; ++cell)
-      halves[run][cell] = second_half(plan, run, drive, plan.cells[cell]);
+      halves[run][cell] = second_half(plan, run, drive, plan.cells[cell],
+                                      InnovationScore(study, study.cells[cell]));
   });
   std::vector<double> gains;
   std::vector<SecondHalf> of_tuned;
@@ -191,7 +192,7 @@ TuningConfirmation confirm_on_drives(const StudyPlan& plan, double within,
                                   .gain = mean_difference(gains),
                                   .covering_at_end = kNaN,
                                   .covering_path = kNaN};
-  judge_innovations(std::move(of_tuned), within, confirmation);
+  judge_innovations(std::move(of_tuned), study.settings.number("study", "within"), confirmation);
   return confirmation;
 }
 

@@ -20,8 +20,8 @@ Study confirming_study(const Study& study, const CellSpec& cell, const TunedNois
 TuningConfirmation confirm_on_runs(const StudyPlan& plan, const Parallel& parallel);
 
 /// Compares both cells on the second half of each recorded drive, with a verdict on the innovations
-/// there. `within` is the margin.
-TuningConfirmation confirm_on_drives(const StudyPlan& plan, double within,
+/// of the second cell there. `plan` is that of `study`.
+TuningConfirmation confirm_on_drives(const Study& study, const StudyPlan& plan,
                                      const Parallel& parallel);
 
 }  // namespace montecarta::experiments

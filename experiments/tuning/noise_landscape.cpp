@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/tuning/noise_landscape.hpp"
 
-#include "analysis/run/nees.hpp"
 #include "analysis/statistics/conformal.hpp"
 #include "engine/core/judgement.hpp"
 #include "engine/errors.hpp"
@@ -36,13 +35,6 @@ double factor_at(int place) { return std::pow(2.0, static_cast<double>(place) / 
 
 NoiseFactors factors_at(const LatticePoint& point) {
   return {factor_at(point.motion), factor_at(point.sensor)};
-}
-
-double log_score_of(const PoseEstimate& estimate, const Pose& truth) {
-  const PoseMoments& judged = judged_moments(estimate);
-  WhitenedPose pose;
-  whiten_pose(boxminus(judged.mean, truth), judged.covariance, pose);
-  return negative_log_density(pose);
 }
 
 NoiseLandscape::NoiseLandscape(const Study& study, const CellSpec& cell, const Parallel& parallel)
@@ -85,7 +77,8 @@ void NoiseLandscape::compute(std::span<const LatticePoint> points, std::uint64_t
   const StudyPlan plan = make_plan(study_);
   std::vector<Work> work;
   for (std::size_t k = 0; k < lacking.size(); ++k) {
-    work.push_back({lacking[k], lacking[k]->runs(parts_of_run_), &plan.cells[k]});
+    work.push_back({lacking[k], lacking[k]->runs(parts_of_run_), &plan.cells[k],
+                    InnovationScore(study_, study_.cells[k])});
     lacking[k]->parts.resize(runs * parts_of_run_);
     lacking[k]->has_failed.resize(runs * kPredictionIntervals.size());
   }
@@ -114,8 +107,8 @@ void NoiseLandscape::score(const Work& work, std::uint64_t run, const Drive& dri
       run_filter(part, *filter, [&](std::size_t scan, const SlamFilter& now, bool is_given) {
         if (!has_truth() && !is_given) return;
         const double score =
-            has_truth() ? log_score_of(now.estimate(), drive.truth[itinerary.scan_step[scan]])
-                        : -now.report().log_likelihood;
+            has_truth() ? pose_score(now.estimate(), drive.truth[itinerary.scan_step[scan]])
+                        : work.innovation_score(now.report(), drive.scan(scan));
         if (std::isnan(score)) return;
         const std::size_t stretch = scan * parts_of_run_ / part.scans;
         work.point->parts[run * parts_of_run_ + stretch][interval].add(score);
@@ -126,34 +119,29 @@ void NoiseLandscape::score(const Work& work, std::uint64_t run, const Drive& dri
 double NoiseLandscape::mean(const LatticePoint& where, std::uint64_t runs,
                             const Intervals& intervals) const {
   const Point& point = points_.at(where);
-  double sum = 0.0;
+  ScoreSum all;
   for (const std::size_t interval : intervals) {
-    ScoreSum all;
-    for (std::size_t part = 0; part < runs * parts_of_run_; ++part) {
-      all.sum += point.parts[part][interval].sum;
-      all.n += point.parts[part][interval].n;
-    }
+    for (std::size_t part = 0; part < runs * parts_of_run_; ++part)
+      all.add(point.parts[part][interval]);
     for (std::uint64_t run = 0; run < runs; ++run) {
-      if (point.has_failed[run * kPredictionIntervals.size() + interval] != 0) all.n = 0.0;
+      if (point.has_failed[run * kPredictionIntervals.size() + interval] != 0)
+        return std::numeric_limits<double>::infinity();
     }
-    if (all.n == 0.0) return std::numeric_limits<double>::infinity();
-    sum += all.sum / all.n;
   }
-  return sum / static_cast<double>(intervals.size());
+  return all.n == 0.0 ? std::numeric_limits<double>::infinity() : all.mean();
 }
 
 std::vector<double> NoiseLandscape::shares(const LatticePoint& where,
                                            const Intervals& intervals) const {
-  const Point& point = points_.at(where);
-  std::vector<double> shares(parts());
-  for (const std::size_t interval : intervals) {
-    double n = 0.0;
-    for (const PartScores& part : point.parts) n += part[interval].n;
-    const double weight =
-        static_cast<double>(parts()) / (n * static_cast<double>(intervals.size()));
-    for (std::size_t part = 0; part < parts(); ++part)
-      shares[part] += weight * point.parts[part][interval].sum;
+  std::vector<double> shares;
+  double n = 0.0;
+  for (const PartScores& part : points_.at(where).parts) {
+    ScoreSum all;
+    for (const std::size_t interval : intervals) all.add(part[interval]);
+    shares.push_back(all.sum);
+    n += all.n;
   }
+  for (double& share : shares) share *= static_cast<double>(parts()) / n;
   return shares;
 }
 

@@ -4,6 +4,7 @@
 #include "engine/threads/parallel.hpp"
 #include "experiments/study/make_plan.hpp"
 #include "experiments/tuning/noise_factors.hpp"
+#include "experiments/tuning/scores.hpp"
 
 #include <array>
 #include <compare>
@@ -31,16 +32,6 @@ inline constexpr int kFarthest = 6 * kOctave;
 double factor_at(int place);
 NoiseFactors factors_at(const LatticePoint& point);
 
-/// A sum of scores, and how many they are.
-struct ScoreSum {
-  double sum = 0.0;
-  double n = 0.0;
-  void add(double score) {
-    sum += score;
-    n += 1.0;
-  }
-};
-
 /// Scores of a part of the data, by prediction interval.
 using PartScores = std::array<ScoreSum, kPredictionIntervals.size()>;
 
@@ -65,8 +56,8 @@ class NoiseLandscape {
 
   /// Computes the scores of the first `runs` runs at all points that lack them.
   void compute(std::span<const LatticePoint> points, std::uint64_t runs);
-  /// Score of the first `runs` runs at a point that was computed: the mean over intervals of the
-  /// mean over scans; infinite where the filter fails.
+  /// Mean score of the first `runs` runs at a point that was computed, over all scans that are
+  /// scored at these intervals; infinite where the filter fails.
   double mean(const LatticePoint& point, std::uint64_t runs, const Intervals& intervals) const;
   /// {part} Shares of the parts in mean() of all runs, which has the mean over parts.
   std::vector<double> shares(const LatticePoint& point, const Intervals& intervals) const;
@@ -83,6 +74,7 @@ class NoiseLandscape {
     Point* point;
     std::uint64_t first_run;
     const Cell* cell;
+    InnovationScore innovation_score;
   };
   std::size_t scans_of(std::uint64_t run) const;
   void compute(const std::vector<Work>& work, std::uint64_t runs) const;
@@ -97,8 +89,5 @@ class NoiseLandscape {
   Intervals intervals_;
   std::map<LatticePoint, Point> points_;
 };
-
-/// The log score of the pose after a scan (STATISTICS 7); NaN where its covariance is singular.
-double log_score_of(const PoseEstimate& estimate, const Pose& truth);
 
 }  // namespace montecarta::experiments

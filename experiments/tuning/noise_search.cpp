@@ -4,8 +4,8 @@
 #include "analysis/statistics/distributions.hpp"
 #include "analysis/statistics/fitted_minimum.hpp"
 #include "engine/core/judgement.hpp"
-#include "engine/text/number_text.hpp"
 #include "engine/errors.hpp"
+#include "engine/text/number_text.hpp"
 
 #include <Eigen/Eigenvalues>
 
