@@ -135,6 +135,7 @@ std::vector<std::string> tuning_notes(const TuningResult& result,
                            {"sensor", change_text(noise.sensor_apart)}}));
   }
   note("flat", names_of_factors(noise, is_flat));
+  if (result.has_gate) notes.push_back(prose("tuning", "gate"));
   if (depend_on_interval(result.by_interval)) notes.push_back(prose("tuning", "not white"));
   if (result.has_truth) {
     notes.push_back(prose("tuning", "cover",

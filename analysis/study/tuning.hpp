@@ -49,8 +49,10 @@ struct TuningResult {
   std::string cell;
   bool has_truth = true;
   std::uint64_t runs = 0;  ///< number of runs, or of recorded drives
-  std::size_t parts = 0;   ///< number of parts of the data that count as independent
-  TunedNoise noise;        ///< by all intervals together
+  /// Whether detections are matched by a gate, so that the score jumps where a match changes.
+  bool has_gate = false;
+  std::size_t parts = 0;  ///< number of parts of the data that count as independent
+  TunedNoise noise;       ///< by all intervals together
   std::vector<TunedByInterval> by_interval = {};
   NoiseGrid grid = {};
 };

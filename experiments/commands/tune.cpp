@@ -31,6 +31,15 @@ namespace fs = std::filesystem;
 
 constexpr const char* kConfirmationFile = "confirmation.h5";
 
+/// Throws StudyError if a result is given in place of a study.
+void refuse_result(const std::string& name) {
+  if (fs::path(name).extension() != ".h5") return;
+  throw StudyError(name +
+                   ": a result, not a study (the filter is run again with other noise, and "
+                   "estimates of another program cannot be): give the study, which 'montecarta "
+                   "info FILE.h5 --text' prints");
+}
+
 const CellSpec& cell_to_tune(const Study& study, const Arguments& arguments) {
   const auto label = arguments.text("cell");
   const CellSpec& cell =
@@ -116,6 +125,7 @@ void write_folder(const TuningResult& result, const fs::path& folder) {
 }  // namespace
 
 int tune_command(const Arguments& arguments) {
+  refuse_result(arguments.operands().front());
   const Study study = study_of(arguments);
   const CellSpec& cell = cell_to_tune(study, arguments);
   const std::uint64_t seed = seed_to_confirm(study, arguments);

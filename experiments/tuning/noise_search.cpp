@@ -209,6 +209,7 @@ TuningResult find_noise(const Study& study, const CellSpec& cell, const Parallel
   TuningResult result{.cell = cell.label,
                       .has_truth = landscape.has_truth(),
                       .runs = landscape.runs(),
+                      .has_gate = study.settings.text("association", "kind") == "nearest",
                       .parts = landscape.parts(),
                       .noise = *noise,
                       .grid = grid_of(landscape, octave, is_free)};
