@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/study/tuning.hpp"
 
+#include "analysis/statistics/spread.hpp"
 #include "analysis/study/prose.hpp"
 #include "engine/text/number_text.hpp"
 
@@ -14,6 +15,8 @@ namespace {
 constexpr int kFactorDigits = 3;
 /// Ratio of the ends of an interval from which a factor counts as not determined.
 constexpr double kWideInterval = 2.0;
+/// Score above the least one up to which the figure shows the landscape.
+constexpr double kHighestDrawn = 10.0;
 
 std::string factor_range_text(const Interval& interval) {
   return readable(interval.lower, kFactorDigits) + " to " + readable(interval.upper, kFactorDigits);
@@ -183,18 +186,16 @@ Figure landscape_figure(const TuningResult& result) {
   const NoiseGrid& grid = result.grid;
   Figure figure = figure_of("noise_landscape");
   figure.name = "landscape";
-  figure.chart.x_label = "motion_noise, as a power of 2";
-  Panel panel{.name = "landscape", .label = "score above the least", .curves = {}, .bands = {}};
-  panel.scale = Scale::logarithmic;
+  figure.chart.x_label = "factor on the noise of the motion, as a power of 2";
+  Panel panel{"landscape", "score above the least", {}, {}};
   const double least = grid.least();
   std::vector<double> places;
   for (const double motion : grid.motion) places.push_back(std::log2(motion));
   for (std::size_t j = 0; j < grid.sensor.size(); ++j) {
-    Curve curve{"sensor_noise " + readable(grid.sensor[j], kFactorDigits), j, {}};
+    Curve curve{"sensor x " + readable(grid.sensor[j], kFactorDigits), j, {}};
     for (const auto& row : grid.score) {
       const double above = row[j] - least;
-      curve.values.push_back(
-          std::isfinite(above) && above > 0.0 ? above : std::numeric_limits<double>::quiet_NaN());
+      curve.values.push_back(above <= kHighestDrawn ? above : kNaN);
     }
     panel.curves.push_back(std::move(curve));
   }

@@ -11,9 +11,10 @@ namespace montecarta::experiments {
 namespace {
 
 Study study_of_association(const std::string& kind) {
-  return parse_study("[study]\nruns = 2\n[scenario]\nworld = small_loop\n[association]\nkind = " +
-                         kind + "\n[cells]\ncell = ekf_slam sensor_noise=0.5\n",
-                     "tuned.ini", ".");
+  return parse_study(
+      "[study]\nname = tuned\nruns = 2\n[scenario]\nworld = small_loop\n[association]\nkind = " +
+          kind + "\n[cells]\ncell = ekf_slam sensor_noise=0.5\n",
+      "tuned.ini", ".");
 }
 
 TEST(InnovationScore, GivesDetectionsThatAreLeftOutTheSameDensityWithAnyNoise) {
