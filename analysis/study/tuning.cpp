@@ -156,6 +156,9 @@ TextTable tuning_table(const TuningResult& result) {
   return table;
 }
 
+std::string tuning_table_note() { return prose("tuning", "table"); }
+std::string landscape_note() { return prose("tuning", "landscape"); }
+
 TextTable landscape_table(const NoiseGrid& grid) {
   TextTable table;
   const double least = grid.least();
@@ -197,7 +200,9 @@ Figure landscape_figure(const TuningResult& result) {
       const double above = row[j] - least;
       curve.values.push_back(above <= kHighestDrawn ? above : kNaN);
     }
-    panel.curves.push_back(std::move(curve));
+    const bool is_drawn =
+        std::ranges::any_of(curve.values, [](double value) { return std::isfinite(value); });
+    if (is_drawn) panel.curves.push_back(std::move(curve));
   }
   add_panels({panel}, places, figure);
   figure.chart.x_from = places.front();

@@ -85,6 +85,9 @@ std::vector<std::string> tuning_notes(const TuningResult& result,
 
 /// The factors by each prediction interval and by all of them.
 TextTable tuning_table(const TuningResult& result);
+/// How to read the two tables.
+std::string tuning_table_note();
+std::string landscape_note();
 /// The grid of scores, above the least one.
 TextTable landscape_table(const NoiseGrid& grid);
 /// The same as columns motion_noise, sensor_noise, score.

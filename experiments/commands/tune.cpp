@@ -2,7 +2,6 @@
 #include "analysis/render/figures/gnuplot.hpp"
 #include "analysis/render/tables/terminal.hpp"
 #include "analysis/study/frame.hpp"
-#include "analysis/study/prose.hpp"
 #include "analysis/study/study_analysis.hpp"
 #include "analysis/study/tuning.hpp"
 #include "analysis/verdict/sentence.hpp"
@@ -106,17 +105,18 @@ void print_findings(const TuningResult& result, const TuningConfirmation& confir
   print("Write: cell = " + cell_line(tuned));
   std::cout << '\n';
   print_table(std::cout, tuning_table(result), width);
-  print(prose("tuning", "table"));
+  print(tuning_table_note());
   std::cout << '\n';
   for (const std::string& note : tuning_notes(result, confirmation)) print(note);
   std::cout << '\n';
-  print(prose("tuning", "landscape"));
+  print(landscape_note());
   print_table(std::cout, landscape_table(result.grid), width);
 }
 
 void write_folder(const TuningResult& result, const fs::path& folder) {
   make_directory(folder);
   write_csv(landscape_frame(result.grid), folder / "landscape.csv");
+  if (!result.noise.motion.is_free()) return;  // no axis to draw over
   const Figure figure = landscape_figure(result);
   const Figure* const figures[] = {&figure};
   draw(figures, folder);
