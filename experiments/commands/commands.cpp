@@ -80,8 +80,8 @@ std::vector<Command> all_commands() {
       {"status", status_command}, {"merge", merge_command},     {"analyze", analyze_command},
       {"report", report_command}, {"compare", compare_command}, {"gate", gate_command},
       {"verify", verify_command}, {"replay", replay_command},   {"bounds", bounds_command},
-      {"plan", plan_command},     {"export", export_command},   {"judge", judge_command},
-      {"list", list_command},     {"work", work_command}};
+      {"plan", plan_command},     {"tune", tune_command},       {"export", export_command},
+      {"judge", judge_command},   {"list", list_command},       {"work", work_command}};
   std::vector<Command> commands;
   for (CommandSpec& spec : read_commands(commands_text())) {
     CommandFunction* const function = functions.at(spec.name);

@@ -108,6 +108,7 @@ def check_plans(output):
                    for word in ("time", "file", "filters", "runs")):
             output.faults.append(f"check {study}: begins with {head}")
     output.expect_fit("plan", "--dim", "3", "--ratio", "1.2", "--scans", "100")
+    output.expect_fit("tune", "first_study", "--cell", "ekf_slam", "--set", "study.runs=20")
 
 
 def check_result(output):

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/statistics/interval.hpp"
+#include "analysis/study/figure.hpp"
+#include "analysis/study/text_table.hpp"
+#include "analysis/verdict/verdict.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace montecarta::analysis {
+
+/// A factor on standard deviations that a filter assumes, with its interval. The interval is NaN
+/// if the score does not depend on the factor, which is 1 then.
+struct TunedFactor {
+  double value = 1.0;
+  Interval interval = {};
+  bool is_free() const { return interval.lower == interval.lower; }
+};
+
+/// The factors at which a score is least (STATISTICS 23).
+struct TunedNoise {
+  TunedFactor motion, sensor;
+  /// The direction in which the factors are least certain: their logarithms one standard error
+  /// from the minimum.
+  double motion_apart = 0.0, sensor_apart = 0.0;
+};
+
+/// The factors by predictions over one interval alone.
+struct TunedByInterval {
+  std::size_t scans = 1;  ///< the filter is given every scan of so many
+  std::optional<TunedNoise> noise;
+};
+
+/// Scores on a grid of factors.
+struct NoiseGrid {
+  std::vector<double> motion, sensor;      ///< factors of the rows and of the columns
+  std::vector<std::vector<double>> score;  ///< {motion, sensor} infinite where the filter fails
+  /// The least score of the grid, which tables and figures subtract.
+  double least() const;
+};
+
+/// What a search for the noise of one cell found.
+struct TuningResult {
+  std::string cell;
+  bool has_truth = true;
+  std::uint64_t runs = 0;  ///< number of runs, or of recorded drives
+  /// Whether detections are matched by a gate, so that the score jumps where a match changes.
+  bool has_gate = false;
+  std::size_t parts = 0;  ///< number of parts of the data that count as independent
+  TunedNoise noise;       ///< by all intervals together
+  std::vector<TunedByInterval> by_interval = {};
+  NoiseGrid grid = {};
+};
+
+/// A difference of scores with its interval.
+struct ScoreDifference {
+  double mean = 0.0;
+  Interval interval = {};
+};
+
+/// The result of filters with the old and the new noise on data that played no part in the search.
+struct TuningConfirmation {
+  std::uint64_t runs = 0;
+  std::uint64_t seed = 0;     ///< seed of simulated runs
+  ScoreDifference gain = {};  ///< score with the old noise minus score with the new one
+  Answer answer = Answer::untested;
+  std::string verdict = {};  ///< the verdict on the new noise in a few words
+  /// Factors on the covariance by which its 95 % ellipsoid covers the truth in at least 95 % of
+  /// runs, at the last scan, and at all scans of a run together; infinite if too many runs failed;
+  /// NaN without a truth.
+  double covering_at_end = 0.0, covering_path = 0.0;
+};
+
+/// The first sentences: the factors, how certain they are, and whether they make the filter
+/// consistent.
+std::string tuning_sentence(const TuningResult& result, const TuningConfirmation& confirmation);
+/// What the user should know besides: {paragraph}.
+std::vector<std::string> tuning_notes(const TuningResult& result,
+                                      const TuningConfirmation& confirmation);
+
+/// The factors by each prediction interval and by all of them.
+TextTable tuning_table(const TuningResult& result);
+/// How to read the two tables.
+std::string tuning_table_note();
+std::string landscape_note();
+/// The grid of scores, above the least one.
+TextTable landscape_table(const NoiseGrid& grid);
+/// The same as columns motion_noise, sensor_noise, score.
+Frame landscape_frame(const NoiseGrid& grid);
+/// The same as curves over motion_noise.
+Figure landscape_figure(const TuningResult& result);
+
+}  // namespace montecarta::analysis

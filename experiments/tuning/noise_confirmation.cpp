@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/tuning/noise_confirmation.hpp"
+
+#include "analysis/run/nees.hpp"
+#include "analysis/statistics/conformal.hpp"
+#include "analysis/statistics/distributions.hpp"
+#include "analysis/statistics/spread.hpp"
+#include "analysis/verdict/innovations.hpp"
+#include "engine/core/judgement.hpp"
+#include "engine/text/number_text.hpp"
+#include "experiments/study/make_plan.hpp"
+#include "experiments/tuning/filter_on_drive.hpp"
+#include "experiments/tuning/noise_factors.hpp"
+#include "experiments/tuning/scores.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+namespace montecarta::experiments {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// Stretches of the second halves, whose scores count as independent.
+constexpr std::size_t kStretchesToConfirm = 20;
+
+/// The cells of a confirming study.
+enum CellToConfirm : std::size_t { as_it_was, tuned };
+
+/// NEES of the pose on the scale of three components; infinite if it is unusable.
+double nees_of(const PoseEstimate& estimate, const Pose& truth) {
+  const PoseMoments& judged = judged_moments(estimate);
+  const Nees sample = nees<3>(boxminus(judged.mean, truth), judged.covariance);
+  if (!sample.is_usable()) return kInfinity;
+  return sample.rank == 0 ? 0.0 : on_full_scale(sample, 3);
+}
+
+/// What one run says of one cell.
+struct ConfirmedRun {
+  double score = kNaN;  ///< mean log score; NaN if the filter failed
+  double nees_at_end = kInfinity, largest_nees = kInfinity;
+};
+
+ConfirmedRun confirmed_run(const StudyPlan& plan, std::uint64_t run, const Drive& drive,
+                           const Cell& cell) {
+  const Itinerary& itinerary = plan.drives->itinerary_of(run);
+  ScoreSum score;
+  double last = 0.0, largest = 0.0;
+  const std::unique_ptr<SlamFilter> filter = cell.make_filter();
+  const bool is_whole = run_filter({plan, run, drive, itinerary.scans()}, *filter,
+                                   [&](std::size_t scan, const SlamFilter& now, bool /*is_given*/) {
+                                     const PoseEstimate estimate = now.estimate();
+                                     const Pose& truth = drive.truth[itinerary.scan_step[scan]];
+                                     const double one = pose_score(estimate, truth);
+                                     if (!std::isnan(one)) score.add(one);
+                                     last = nees_of(estimate, truth);
+                                     largest = std::max(largest, last);
+                                   });
+  if (!is_whole) return {};
+  return {score.mean(), last, largest};
+}
+
+ScoreDifference mean_difference(const std::vector<double>& differences) {
+  SummaryOf sums;
+  for (const double difference : differences) {
+    if (!std::isnan(difference)) sums.add(difference);
+  }
+  const Summary summary = sums.result();
+  return {summary.mean, summary.interval(kUsualLevel)};
+}
+
+/// Innovations of one cell in the second half of one drive.
+struct SecondHalf {
+  std::array<ScoreSum, kStretchesToConfirm> scores;
+  std::vector<double> times, nis;
+  std::vector<std::uint32_t> dof;
+  bool is_whole = false;
+};
+
+SecondHalf second_half(const StudyPlan& plan, std::uint64_t run, const Drive& drive,
+                       const Cell& cell, const InnovationScore& score) {
+  const Itinerary& itinerary = plan.drives->itinerary_of(run);
+  const std::size_t scans = itinerary.scans(), half = scans / 2;
+  SecondHalf found;
+  const std::unique_ptr<SlamFilter> filter = cell.make_filter();
+  found.is_whole =
+      run_filter({plan, run, drive, scans}, *filter,
+                 [&](std::size_t scan, const SlamFilter& now, bool /*is_given*/) {
+                   if (scan < half) return;
+                   const ScanReport& report = now.report();
+                   found.scores[(scan - half) * kStretchesToConfirm / (scans - half)].add(
+                       score(report, drive.scan(scan)));
+                   found.times.push_back(itinerary.step_time[itinerary.scan_step[scan]]);
+                   found.nis.push_back(report.nis);
+                   found.dof.push_back(report.nis_dof);
+                 });
+  return found;
+}
+
+/// Differences of the mean scores of each stretch.
+void add_differences(const SecondHalf& before, const SecondHalf& after,
+                     std::vector<double>& differences) {
+  for (std::size_t k = 0; k < kStretchesToConfirm; ++k) {
+    const ScoreSum &old_score = before.scores[k], &new_score = after.scores[k];
+    const bool is_there = before.is_whole && after.is_whole && new_score.n > 0.0;
+    differences.push_back(is_there ? old_score.mean() - new_score.mean() : kNaN);
+  }
+}
+
+/// Takes the verdict on the innovations of all second halves.
+void judge_innovations(std::vector<SecondHalf> halves, double within,
+                       TuningConfirmation& confirmation) {
+  std::size_t scans = 0, longest = 0;
+  for (std::size_t run = 0; run < halves.size(); ++run) {
+    if (halves[run].times.size() > scans) longest = run;
+    scans = std::max(scans, halves[run].times.size());
+  }
+  const std::vector<double> times = halves[longest].times;
+  InnovationSums sums(scans);
+  for (std::size_t run = 0; run < halves.size(); ++run) {
+    SecondHalf& half = halves[run];
+    half.nis.resize(scans);
+    half.dof.resize(scans);
+    half.times.resize(scans);
+    sums.add(run, half.times, half.nis, half.dof);
+  }
+  if (sums.empty()) {
+    confirmation.verdict = "not judged, since there are none";
+    return;
+  }
+  const Innovations found = sums.result(times, kUsualLevel, within);
+  confirmation.answer =
+      found.whiteness() == Whiteness::not_white && found.verdict.answer == Answer::consistent
+          ? Answer::inconsistent
+          : found.verdict.answer;
+  confirmation.verdict = whiteness_in_words(found) + ", with a NIS of " + readable(found.ratio) +
+                         " per component, where 1 is right";
+}
+
+}  // namespace
+
+Study confirming_study(const Study& study, const CellSpec& cell, const TunedNoise& noise,
+                       std::uint64_t seed) {
+  return study_of_cells(
+      study,
+      {cell, with_noise(cell, {noise.motion.value, noise.sensor.value}, cell.label + "_tuned")},
+      study.settings.count("study", "runs"), seed);
+}
+
+TuningConfirmation confirm_on_runs(const StudyPlan& plan, const Parallel& parallel) {
+  std::vector<std::array<ConfirmedRun, 2>> runs(plan.runs);
+  parallel.for_each(runs.size(), [&](std::size_t run) {
+    Drive drive;
+    plan.drives->generate(run, drive);
+    for (std::size_t cell = 0; cell < 2; ++cell)
+      runs[run][cell] = confirmed_run(plan, run, drive, plan.cells[cell]);
+  });
+  std::vector<double> gains, at_end, of_path;
+  for (const auto& run : runs) {
+    gains.push_back(run[as_it_was].score - run[tuned].score);
+    at_end.push_back(run[tuned].nees_at_end);
+    of_path.push_back(run[tuned].largest_nees);
+  }
+  const double quantile = chi_squared_quantile(kUsualLevel, 3.0);
+  return {.runs = plan.runs,
+          .seed = plan.seed,
+          .gain = mean_difference(gains),
+          .covering_at_end = conformal_bound(at_end, kUsualLevel) / quantile,
+          .covering_path = conformal_bound(of_path, kUsualLevel) / quantile};
+}
+
+TuningConfirmation confirm_on_drives(const Study& study, const StudyPlan& plan,
+                                     const Parallel& parallel) {
+  const std::size_t drives = std::max<std::size_t>(plan.drives->own_drives(), 1);
+  std::vector<std::array<SecondHalf, 2>> halves(drives);
+  parallel.for_each(drives, [&](std::size_t run) {
+    Drive drive;
+    plan.drives->generate(run, drive);
+    for (std::size_t cell = 0; cell < 2; ++cell)
+      halves[run][cell] = second_half(plan, run, drive, plan.cells[cell],
+                                      InnovationScore(study, study.cells[cell]));
+  });
+  std::vector<double> gains;
+  std::vector<SecondHalf> of_tuned;
+  for (auto& half : halves) {
+    add_differences(half[as_it_was], half[tuned], gains);
+    of_tuned.push_back(std::move(half[tuned]));
+  }
+  TuningConfirmation confirmation{.runs = drives,
+                                  .gain = mean_difference(gains),
+                                  .covering_at_end = kNaN,
+                                  .covering_path = kNaN};
+  judge_innovations(std::move(of_tuned), study.settings.number("study", "within"), confirmation);
+  return confirmation;
+}
+
+}  // namespace montecarta::experiments

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/tuning/noise_landscape.hpp"
+
+#include "analysis/statistics/conformal.hpp"
+#include "engine/core/judgement.hpp"
+#include "engine/errors.hpp"
+#include "experiments/tuning/filter_on_drive.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace montecarta::experiments {
+namespace {
+
+/// Fewest parts into which recorded drives are divided.
+constexpr std::uint64_t kStretches = 20;
+/// Fewest scans that a run must have for each scan of a prediction interval, or a stretch of a
+/// drive.
+constexpr std::size_t kFewestScans = 2;
+
+std::uint64_t runs_to_learn_from(const Study& study, const StudyPlan& plan) {
+  if (!plan.drives->itinerary().has_truth)
+    return std::max<std::uint64_t>(plan.drives->own_drives(), 1);
+  const std::uint64_t fewest = fewest_for_bound(kUsualLevel) + 1;
+  if (plan.runs >= fewest) return plan.runs;
+  throw StudyError(study.settings.place("study", "runs") + ": runs = " + std::to_string(plan.runs) +
+                   " (too few to choose noise by): give " + std::to_string(fewest) +
+                   " or more, e.g. --set study.runs=200");
+}
+
+}  // namespace
+
+double factor_at(int place) { return std::pow(2.0, static_cast<double>(place) / kOctave); }
+
+NoiseFactors factors_at(const LatticePoint& point) {
+  return {factor_at(point.motion), factor_at(point.sensor)};
+}
+
+NoiseLandscape::NoiseLandscape(const Study& study, const CellSpec& cell, const Parallel& parallel)
+    : study_(study_of_cells(study, {cell}, study.settings.count("study", "runs"),
+                            study.settings.count("study", "seed"))),
+      cell_(cell),
+      parallel_(parallel),
+      plan_(make_plan(study_)),
+      runs_(runs_to_learn_from(study, plan_)),
+      parts_of_run_(has_truth() ? 1 : (kStretches + runs_ - 1) / runs_) {
+  std::size_t fewest = std::numeric_limits<std::size_t>::max();
+  for (std::uint64_t run = 0; run < runs_; ++run) fewest = std::min(fewest, scans_of(run));
+  for (std::size_t k = 0; k < kPredictionIntervals.size(); ++k) {
+    if (fewest >= kFewestScans * kPredictionIntervals[k] * parts_of_run_) intervals_.push_back(k);
+  }
+  if (!intervals_.empty()) return;
+  throw StudyError(study.settings.place("study", "name") + ": " + std::to_string(fewest) +
+                   " scans (too few to choose noise by): take a longer drive, with at least " +
+                   std::to_string(kFewestScans * parts_of_run_) +
+                   (has_truth() ? " scans" : " scans in its first half"));
+}
+
+std::size_t NoiseLandscape::scans_of(std::uint64_t run) const {
+  const std::size_t scans = plan_.drives->itinerary_of(run).scans();
+  return has_truth() ? scans : scans / 2;
+}
+
+void NoiseLandscape::compute(std::span<const LatticePoint> points, std::uint64_t runs) {
+  std::vector<Point*> lacking;
+  std::vector<CellSpec> cells;
+  for (const LatticePoint& where : points) {
+    Point& point = points_[where];
+    if (point.runs(parts_of_run_) >= runs) continue;
+    if (std::ranges::count(lacking, &point) > 0) continue;
+    lacking.push_back(&point);
+    cells.push_back(with_noise(cell_, factors_at(where), cell_.label));
+  }
+  if (cells.empty()) return;
+  study_.cells = std::move(cells);
+  const StudyPlan plan = make_plan(study_);
+  std::vector<Work> work;
+  for (std::size_t k = 0; k < lacking.size(); ++k) {
+    work.push_back({lacking[k], lacking[k]->runs(parts_of_run_), &plan.cells[k],
+                    InnovationScore(study_, study_.cells[k])});
+    lacking[k]->parts.resize(runs * parts_of_run_);
+    lacking[k]->has_failed.resize(runs * kPredictionIntervals.size());
+  }
+  compute(work, runs);
+}
+
+void NoiseLandscape::compute(const std::vector<Work>& work, std::uint64_t runs) const {
+  const std::uint64_t first = std::ranges::min_element(work, {}, &Work::first_run)->first_run;
+  parallel_.for_each(runs - first, [&](std::size_t i) {
+    const std::uint64_t run = first + i;
+    Drive drive;
+    plan_.drives->generate(run, drive);
+    parallel_.for_each(work.size() * intervals_.size(), [&](std::size_t task) {
+      const Work& here = work[task / intervals_.size()];
+      if (run >= here.first_run) score(here, run, drive, intervals_[task % intervals_.size()]);
+    });
+  });
+}
+
+void NoiseLandscape::score(const Work& work, std::uint64_t run, const Drive& drive,
+                           std::size_t interval) const {
+  const Itinerary& itinerary = plan_.drives->itinerary_of(run);
+  const DrivePart part{plan_, run, drive, scans_of(run), kPredictionIntervals[interval]};
+  const std::unique_ptr<SlamFilter> filter = work.cell->make_filter();
+  const bool is_whole =
+      run_filter(part, *filter, [&](std::size_t scan, const SlamFilter& now, bool is_given) {
+        if (!has_truth() && !is_given) return;
+        const double score =
+            has_truth() ? pose_score(now.estimate(), drive.truth[itinerary.scan_step[scan]])
+                        : work.innovation_score(now.report(), drive.scan(scan));
+        if (std::isnan(score)) return;
+        const std::size_t stretch = scan * parts_of_run_ / part.scans;
+        work.point->parts[run * parts_of_run_ + stretch][interval].add(score);
+      });
+  work.point->has_failed[run * kPredictionIntervals.size() + interval] = is_whole ? 0 : 1;
+}
+
+double NoiseLandscape::mean(const LatticePoint& where, std::uint64_t runs,
+                            const Intervals& intervals) const {
+  const Point& point = points_.at(where);
+  ScoreSum all;
+  for (const std::size_t interval : intervals) {
+    for (std::size_t part = 0; part < runs * parts_of_run_; ++part)
+      all.add(point.parts[part][interval]);
+    for (std::uint64_t run = 0; run < runs; ++run) {
+      if (point.has_failed[run * kPredictionIntervals.size() + interval] != 0)
+        return std::numeric_limits<double>::infinity();
+    }
+  }
+  return all.n == 0.0 ? std::numeric_limits<double>::infinity() : all.mean();
+}
+
+std::vector<double> NoiseLandscape::shares(const LatticePoint& where,
+                                           const Intervals& intervals) const {
+  std::vector<double> shares;
+  double n = 0.0;
+  for (const PartScores& part : points_.at(where).parts) {
+    ScoreSum all;
+    for (const std::size_t interval : intervals) all.add(part[interval]);
+    shares.push_back(all.sum);
+    n += all.n;
+  }
+  for (double& share : shares) share *= static_cast<double>(parts()) / n;
+  return shares;
+}
+
+}  // namespace montecarta::experiments

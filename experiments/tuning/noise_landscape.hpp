@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/threads/parallel.hpp"
+#include "experiments/study/make_plan.hpp"
+#include "experiments/tuning/noise_factors.hpp"
+#include "experiments/tuning/scores.hpp"
+
+#include <array>
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <vector>
+
+namespace montecarta::experiments {
+
+/// Scans between two that a filter is given, by which its predictions are scored (STATISTICS 23).
+inline constexpr std::array<std::size_t, 3> kPredictionIntervals = {1, 3, 10};
+
+/// A pair of factors on the lattice of the search, in eighths of an octave: 8 is a factor of 2.
+struct LatticePoint {
+  int motion = 0;
+  int sensor = 0;
+  auto operator<=>(const LatticePoint&) const = default;
+};
+inline constexpr int kOctave = 8;
+/// Farthest point of the lattice: a factor of 64.
+inline constexpr int kFarthest = 6 * kOctave;
+
+double factor_at(int place);
+NoiseFactors factors_at(const LatticePoint& point);
+
+/// Scores of a part of the data, by prediction interval.
+using PartScores = std::array<ScoreSum, kPredictionIntervals.size()>;
+
+/// Indices in kPredictionIntervals.
+using Intervals = std::vector<std::size_t>;
+
+/// The scores of one cell as functions of the noise that it assumes, computed where they are asked
+/// for: the log score of the pose at all scans where there is a truth, or else that of the
+/// innovations in the first half of each recorded drive.
+class NoiseLandscape {
+ public:
+  /// Throws StudyError if there are too few runs or scans to learn from.
+  NoiseLandscape(const Study& study, const CellSpec& cell, const Parallel& parallel);
+
+  bool has_truth() const { return plan_.drives->itinerary().has_truth; }
+  /// Number of runs, or of recorded drives.
+  std::uint64_t runs() const { return runs_; }
+  /// Number of parts of the data, which count as independent: runs, or stretches of drives.
+  std::size_t parts() const { return runs_ * parts_of_run_; }
+  /// The prediction intervals for which there are enough scans.
+  const Intervals& intervals() const { return intervals_; }
+
+  /// Computes the scores of the first `runs` runs at all points that lack them.
+  void compute(std::span<const LatticePoint> points, std::uint64_t runs);
+  /// Mean score of the first `runs` runs at a point that was computed, over all scans that are
+  /// scored at these intervals; infinite where the filter fails.
+  double mean(const LatticePoint& point, std::uint64_t runs, const Intervals& intervals) const;
+  /// {part} Shares of the parts in mean() of all runs, which has the mean over parts.
+  std::vector<double> shares(const LatticePoint& point, const Intervals& intervals) const;
+
+ private:
+  /// The scores of a point.
+  struct Point {
+    std::vector<PartScores> parts;
+    std::vector<std::uint8_t> has_failed;  ///< {run, interval}
+    std::uint64_t runs(std::size_t parts_of_run) const { return parts.size() / parts_of_run; }
+  };
+  /// A point whose runs from `first_run` on are computed.
+  struct Work {
+    Point* point;
+    std::uint64_t first_run;
+    const Cell* cell;
+    InnovationScore innovation_score;
+  };
+  std::size_t scans_of(std::uint64_t run) const;
+  void compute(const std::vector<Work>& work, std::uint64_t runs) const;
+  void score(const Work& work, std::uint64_t run, const Drive& drive, std::size_t interval) const;
+
+  Study study_;
+  CellSpec cell_;
+  const Parallel& parallel_;
+  StudyPlan plan_;
+  std::uint64_t runs_;
+  std::size_t parts_of_run_;
+  Intervals intervals_;
+  std::map<LatticePoint, Point> points_;
+};
+
+}  // namespace montecarta::experiments

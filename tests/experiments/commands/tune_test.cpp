@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tests/experiments/commands/program.hpp"
+
+#include <cmath>
+#include <regex>
+#include <sstream>
+
+namespace montecarta::experiments {
+namespace {
+
+using testing::HasSubstr;
+
+/// Localisation in a small known map, in which EKF-SLAM with the right noise is consistent.
+const std::string kTunedStudy = R"([study]
+name = ring
+runs = 60
+[scenario]
+world = ring.csv
+noise = matched
+sigma_speed = 0.1
+sigma_steer_deg = 1
+sigma_range = 0.1
+sigma_bearing_deg = 1
+start_sigma_m = 0.1
+start_sigma_deg = 1
+[belief]
+map = known
+[cells]
+cell = ekf_slam
+)";
+
+/// A ring of 20 m, with landmarks inside and outside.
+const std::string kRing =
+    "kind,x,y\nwaypoint,20,0\nwaypoint,40,20\nwaypoint,20,40\nwaypoint,0,20\n"
+    "landmark,10,10\nlandmark,30,10\nlandmark,30,30\nlandmark,10,30\n"
+    "landmark,20,-8\nlandmark,48,20\nlandmark,20,48\nlandmark,-8,20\n";
+
+/// The drive of such a run without its truth, with half of the sensor's noise.
+const std::string kTunedLog = R"([study]
+name = log
+runs = 1
+[scenario]
+kind = log
+path = drives/runs/run_0000
+max_range = 30
+[belief]
+vehicle = front_axle
+wheelbase = 4
+map = known
+start_sigma_m = 0.1
+start_sigma_deg = 1
+sigma_speed = 0.1
+sigma_steer_deg = 1
+sigma_range = 0.05
+sigma_bearing_deg = 0.5
+[cells]
+cell = ekf_slam
+)";
+
+/// A factor as the table prints it: "2.01 [1.97, 2.05]".
+struct PrintedFactor {
+  double value = 0.0, lower = 0.0, upper = 0.0;
+};
+
+/// The factors of motion and sensor in the row of the table that begins with `name`.
+std::vector<PrintedFactor> factors_in(const std::string& output, const std::string& name) {
+  static const std::regex factor(R"(([0-9.]+) \[([0-9.]+), ([0-9.]+)\])");
+  std::istringstream lines(output);
+  std::vector<PrintedFactor> found;
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with(name + " ")) continue;
+    for (std::sregex_iterator at(line.begin(), line.end(), factor), end; at != end; ++at)
+      found.push_back({std::stod(at->str(1)), std::stod(at->str(2)), std::stod(at->str(3))});
+    return found;
+  }
+  return found;
+}
+
+/// The factor must be within four standard errors of the truth, and known to 30 %.
+void expect_holds(const PrintedFactor& factor, double truth) {
+  const double half_width = std::log(factor.upper / factor.lower) / 2.0;  // two standard errors
+  EXPECT_LT(std::abs(std::log(factor.value / truth)), 2.0 * half_width);
+  EXPECT_LT(half_width, 0.3);
+}
+
+class Tune : public Program {
+ protected:
+  Tune() {
+    write("ring.ini", kTunedStudy);
+    write("ring.csv", kRing);
+  }
+  Called tune(const std::vector<std::string>& settings,
+              const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> words = {"tune", "ring.ini"};
+    for (const std::string& setting : settings) words.insert(words.end(), {"--set", setting});
+    return call_with(words, more);
+  }
+};
+
+TEST_F(Tune, FindsTheFactorsOfWrongNoiseOnMotionAndSensor) {
+  const Called called = tune({"belief.sigma_speed=0.05", "belief.sigma_steer_deg=0.5",
+                              "belief.sigma_range=0.14", "belief.sigma_bearing_deg=1.4"});
+  ASSERT_EQ(called.code, 0) << called.err;
+  EXPECT_THAT(called.out, testing::StartsWith("ekf_slam should assume "));
+  for (const char* row : {"1", "3", "10", "all"}) {
+    const auto factors = factors_in(called.out, row);
+    ASSERT_EQ(factors.size(), 2U) << called.out;
+    expect_holds(factors[0], 2.0);
+    expect_holds(factors[1], 1.0 / 1.4);
+  }
+  EXPECT_THAT(called.out, HasSubstr("ekf_slam_tuned"));
+  EXPECT_THAT(called.out, HasSubstr("60 fresh runs"));
+}
+
+TEST_F(Tune, FindsOneWhereTheNoiseIsRight) {
+  const auto factors = factors_in(tune({}).out, "all");
+  ASSERT_EQ(factors.size(), 2U);
+  expect_holds(factors[0], 1.0);
+  expect_holds(factors[1], 1.0);
+}
+
+TEST_F(Tune, SaysTheSameOnAnyNumberOfThreads) {
+  const auto output = [&](const std::vector<std::string>& how) {
+    static const std::regex time(R"( +[0-9.]+\n)");
+    return std::regex_replace(tune({"study.runs=24"}, how).out, time, "\n");
+  };
+  const std::string serial = output({"--backend", "serial"});
+  EXPECT_THAT(serial, HasSubstr("should assume"));
+  EXPECT_EQ(serial, output({"--threads", "2"}));
+  EXPECT_EQ(serial, output({"--threads", "3", "--backend", "openmp"}));
+}
+
+TEST_F(Tune, LeavesAFactorWithoutInfluenceAsItIs) {
+  const Called called = tune({"cells.cell=dead_reckoning", "belief.map=estimated",
+                              "scenario.start_sigma_m=0", "scenario.start_sigma_deg=0"});
+  ASSERT_EQ(called.code, 0) << called.err;
+  ASSERT_EQ(factors_in(called.out, "all").size(), 1U) << called.out;
+  EXPECT_THAT(called.out, HasSubstr("does not depend on sensor_noise"));
+}
+
+TEST_F(Tune, WritesTheLandscapeAndTheConfirmingStudy) {
+  const Called called = tune({"study.runs=24"}, {"-o", "found"});
+  ASSERT_EQ(called.code, 0) << called.err;
+  EXPECT_THAT(text_of("found/landscape.csv"), testing::StartsWith("motion_noise,sensor_noise,"));
+  EXPECT_TRUE(exists("found/figures/landscape.svg"));
+  EXPECT_EQ(
+      call({"gate", "found/confirmation.h5", "--cell", "ekf_slam_tuned", "--within", "9"}).code, 0);
+  EXPECT_THAT(tune({"study.runs=24"}, {"-o", "found"}).err, HasSubstr("is there already"));
+}
+
+TEST_F(Tune, TakesADriveWithoutTruthByItsInnovations) {
+  const Called exported =
+      call({"export", "ring.ini", "-o", "drives", "--set", "scenario.loops=8", "--runs", "0:1"});
+  ASSERT_EQ(exported.code, 0) << exported.err;
+  write("log.ini", kTunedLog);
+  const Called called = call({"tune", "log.ini"});
+  ASSERT_EQ(called.code, 0) << called.err;
+  const auto factors = factors_in(called.out, "all");
+  ASSERT_EQ(factors.size(), 2U) << called.out;
+  expect_holds(factors[0], 1.0);
+  expect_holds(factors[1], 2.0);
+  EXPECT_THAT(called.out, HasSubstr("innovations of the second half"));
+  const std::string of_map = "map = known\nstart_sigma_m = 0.1\nstart_sigma_deg = 1\n";
+  write("log.ini", std::string(kTunedLog).erase(kTunedLog.find(of_map), of_map.size()));
+  expect_refused({"tune", "log.ini", "--set", "cells.cell=dead_reckoning"},
+                 "has the same score with any noise");
+}
+
+TEST_F(Tune, RefusesWhatCannotBeTuned) {
+  expect_refused({"tune", "ring.ini", "--cell", "ekf_slma"}, "did you mean ekf_slam?");
+  expect_refused({"tune", "ring.ini", "--set", "study.runs=19"}, "too few to choose noise by");
+  expect_refused({"tune", "ring.ini", "--seed", "1"}, "--seed 1: the seed of the study");
+  expect_refused({"tune", "mine.h5"}, "mine.h5: a result, not a study");
+  write("blink.csv", kBlinkWorld);
+  write("ring.ini", kBlink);
+  expect_refused({"tune", "ring.ini"}, "--cell CELL is needed");
+  expect_refused({"tune", "ring.ini", "--set", "cells.cell=external command=cat"},
+                 "cell external is a program");
+}
+
+}  // namespace
+}  // namespace montecarta::experiments
