@@ -43,6 +43,7 @@ const std::vector<SectionPlace>& reading_order() {
       {"map_size"},
       {"joint_nees"},
       {"observability"},
+      {"evolution"},
       {"smoother"},
       {"innovations", {"nis", "whiteness"}},
       {"calibration", {"nees_quantiles", "calibration", "ranks"}},
