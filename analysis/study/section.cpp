@@ -29,12 +29,15 @@ Section section_of(std::string_view name, const Values& values) {
 const std::vector<SectionPlace>& reading_order() {
   static const std::vector<SectionPlace> order = {
       {"title", {}, Section::Shown::open},
+      {"sweep", {}, Section::Shown::open, "sweep_"},
       {"cards", {}, Section::Shown::open},
       {"drive", {}, Section::Shown::open},
       {"references", {"reference_error"}, Section::Shown::open},
       {"nees", {"anees"}, Section::Shown::open},
       {"replay", {}, Section::Shown::open},
-      {"errors", {"rmse", "error_envelopes"}, Section::Shown::open},
+      {"errors",
+       {"rmse", "position_boxes", "heading_boxes", "error_envelopes"},
+       Section::Shown::open},
       {"verdict"},
       {"failures"},
       {"components"},
