@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/study/boxes.hpp"
 
+#include "analysis/statistics/quantile.hpp"
 #include "analysis/statistics/spread.hpp"
 #include "engine/errors.hpp"
 
@@ -15,14 +16,6 @@ namespace {
 constexpr double kHalfBox = 0.3, kHalfCap = 0.14;  // heights, of the distance between rows
 constexpr double kMedianThickness = 3.0;           // [px]
 constexpr double kLogarithmicSpan = 30.0;          // boxes that span more have a logarithmic axis
-
-/// A quantile of sorted values.
-double quantile_of(const std::vector<double>& sorted, double probability) {
-  const double place = probability * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<std::size_t>(place);
-  const std::size_t above = std::min(below + 1, sorted.size() - 1);
-  return std::lerp(sorted[below], sorted[above], place - static_cast<double>(below));
-}
 
 /// The quantiles with their names.
 std::array<std::pair<const char*, double>, 5> named(const FiveNumbers& box) {
@@ -101,7 +94,6 @@ void set_range(double least, double greatest, Chart& chart) {
 
 FiveNumbers five_numbers(std::vector<double> values) {
   expect(!values.empty(), "a box of no values");
-  std::ranges::sort(values);
   return {quantile_of(values, 0.05), quantile_of(values, 0.25), quantile_of(values, 0.5),
           quantile_of(values, 0.75), quantile_of(values, 0.95)};
 }

@@ -14,8 +14,7 @@ struct FiveNumbers {
   double low = 0.0, lower_quartile = 0.0, median = 0.0, upper_quartile = 0.0, high = 0.0;
 };
 
-/// The five quantiles of at least one value, none NaN, interpolated between the two values next to
-/// each (STATISTICS 24).
+/// The five quantiles (quantile_of()) of at least one value, none NaN (STATISTICS 24).
 FiveNumbers five_numbers(std::vector<double> values);
 
 /// The values of the runs of one cell.

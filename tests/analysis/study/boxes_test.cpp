@@ -22,11 +22,11 @@ std::vector<double> from_zero_to(int last) {
 
 TEST(FiveNumbers, AreQuantilesBetweenNeighbours) {
   const FiveNumbers box = five_numbers(from_zero_to(10));
-  EXPECT_DOUBLE_EQ(box.low, 0.5);
-  EXPECT_DOUBLE_EQ(box.lower_quartile, 2.5);
+  EXPECT_DOUBLE_EQ(box.low, 0.05);
+  EXPECT_DOUBLE_EQ(box.lower_quartile, 2.25);
   EXPECT_DOUBLE_EQ(box.median, 5.0);
-  EXPECT_DOUBLE_EQ(box.upper_quartile, 7.5);
-  EXPECT_DOUBLE_EQ(box.high, 9.5);
+  EXPECT_DOUBLE_EQ(box.upper_quartile, 7.75);
+  EXPECT_DOUBLE_EQ(box.high, 9.95);
   EXPECT_EQ(five_numbers({3.0}).low, 3.0);
   EXPECT_EQ(five_numbers({3.0}).high, 3.0);
 }

@@ -30,7 +30,7 @@ CellAnalysis swept_cell(const std::string& filter, const Options& settings, doub
   return cell;
 }
 
-StudyAnalysis study_of(std::vector<CellAnalysis> cells) {
+StudyAnalysis swept_study(std::vector<CellAnalysis> cells) {
   StudyAnalysis study;
   study.cells = std::move(cells);
   return study;
@@ -44,7 +44,7 @@ StudyAnalysis with_particles(const std::vector<std::string>& numbers) {
                                  100.0 / std::stod(particles)));
   }
   cells.push_back(swept_cell("kf", {{"iterations", "0"}}));
-  return study_of(cells);
+  return swept_study(cells);
 }
 
 TEST(Sweeps, AreCurvesOfCellsThatDifferInOneNumber) {
@@ -61,27 +61,27 @@ TEST(Sweeps, AreCurvesOfCellsThatDifferInOneNumber) {
 
 TEST(Sweeps, NeedThreeValues) {
   EXPECT_THAT(sweeps_of(with_particles({"20", "5"})), IsEmpty());
-  EXPECT_THAT(sweeps_of(study_of({})), IsEmpty());
+  EXPECT_THAT(sweeps_of(swept_study({})), IsEmpty());
 }
 
 TEST(Sweeps, AreNotOfCellsThatDifferInTwoNumbers) {
   std::vector<CellAnalysis> cells;
   for (const char* value : {"1", "2", "3", "4"})
     cells.push_back(swept_cell("pf", {{"particles", value}, {"generations", value}}));
-  EXPECT_THAT(sweeps_of(study_of(cells)), IsEmpty());
+  EXPECT_THAT(sweeps_of(swept_study(cells)), IsEmpty());
 }
 
 TEST(Sweeps, AreOfNumbersOnly) {
   std::vector<CellAnalysis> cells;
   for (const char* value : {"best", "random", "2nd"})
     cells.push_back(swept_cell("pf", {{"base", value}}));
-  EXPECT_THAT(sweeps_of(study_of(cells)), IsEmpty());
+  EXPECT_THAT(sweeps_of(swept_study(cells)), IsEmpty());
 }
 
 TEST(Sweeps, TakeAFactorThatIsNotStoredForOne) {
   const std::vector<Sweep> sweeps =
-      sweeps_of(study_of({swept_cell("kf", {}), swept_cell("kf", {{"motion_noise", "0.5"}}),
-                          swept_cell("kf", {{"motion_noise", "2"}})}));
+      sweeps_of(swept_study({swept_cell("kf", {}), swept_cell("kf", {{"motion_noise", "0.5"}}),
+                             swept_cell("kf", {{"motion_noise", "2"}})}));
   ASSERT_EQ(sweeps.size(), 1U);
   EXPECT_THAT(sweeps[0].values, ElementsAre("0.5", "1", "2"));
   EXPECT_EQ(sweeps[0].curves[0].name, "kf");
