@@ -49,7 +49,7 @@ VERDICTS = (("agrees", CONFIRMED), ("holds", CONFIRMED), ("not reproduced", CONT
 ORDER = (CONTRADICTED, CONFIRMED, UNDECIDED, NOT_YET, NEVER)  # of the lines of a table
 PUBLISH = ": publish the page again"  # it is older than the claim
 BAND_WITHIN = 0.01  # a printed band is right if its ends are off by less than this share
-OURS = "not in the paper"
+OURS = printed.OURS
 
 
 # ---- Statements

@@ -16,7 +16,8 @@ The .printed file beside a study has one statement per line:
     claim = position_rmse srcd < ufastslam note="Fig. 3"
     assume = Loops: the paper does not say; two.
 
-A note that begins with "not in the paper" marks a comparison of our own. Cells are named by their
+A note that begins with "not in the paper" marks a comparison of our own. --lead FILE writes three
+sentences to FILE: what the paper says, what was found, and how sure that is. Cells are named by their
 labels. A metric is a column of runs.csv, or share_inside_BLOCK, share_above_BLOCK or
 stays_above_from_BLOCK (pose, position, heading), which compare the average NEES of all runs with a
 band: that of the paper, or else the chi-square band for the number of runs. These metrics depend on
@@ -30,6 +31,7 @@ import os
 import re
 import shlex
 import sys
+import textwrap
 
 try:
     import numpy as np
@@ -39,6 +41,7 @@ except ImportError as missing:
              "convert, and call the script by /usr/bin/python3")
 
 LEVEL = 0.95
+OURS = "not in the paper"  # so begins the note of a comparison of our own
 REPRODUCED_WITHIN = 2.0  # a number that is off by more than this factor is not reproduced
 ALIKE_WITHIN = 0.1  # cells are alike if they differ by less than this share of their mean
 BAND_METRIC = re.compile("(share_inside|share_above|stays_above_from)_(pose|position|heading)$")
@@ -372,27 +375,112 @@ def print_table(headings, rows):
         print("| " + " | ".join(map(escaped, row)) + " |")
 
 
-def compare(printed, measured, batches):
-    """Prints the whole comparison."""
+def judged(printed, measured, batches):
+    """All statements with what was measured: (values, claims), each a list of (statement, (mean or
+    difference, its interval or None, verdict)). Raises PrintedError."""
     for value in printed["value"]:
         measured.check(value["metric"], value["cell"], value.get("relative_to", value["cell"]))
     for claim in printed["claim"]:
         measured.check(claim["metric"], claim["left"], claim["right"])
-    print("## Printed and measured\n\n" + printed["source"])
-    values, claims = [], []
+    values = []
     for value in printed["value"]:
         mean, interval, verdict = judge_value(value, printed, measured, batches)
-        verdict = another_world(value, printed, measured, batches) or verdict
-        values.append([value["cell"], name_of_value(value), value["printed"], number_text(mean),
-                       interval_text(interval), verdict, value.get("note", "")])
-    for claim in printed["claim"]:
-        difference, interval, verdict = judge_claim(claim, printed, measured, batches)
-        claims.append([name_of_claim(claim), number_text(difference), interval_text(interval),
-                       verdict, claim["note"]])
+        values.append((value, (mean, interval,
+                               another_world(value, printed, measured, batches) or verdict)))
+    return values, [(claim, judge_claim(claim, printed, measured, batches))
+                    for claim in printed["claim"]]
+
+
+# ---- Three sentences
+
+
+def counted(number, noun):
+    return f"{number} {noun}" + ("" if number == 1 else "s")
+
+
+def claim_in_words(claim):
+    relation = {"<": "is less than that of", ">": "is greater than that of",
+                "~": "differs by less than 10 % from that of"}[claim["relation"]]
+    where = f" ({claim['note']})" if claim["note"] else ""
+    metric = claim["metric"].replace("_", " ")
+    return f"the {metric} of {claim['left']} {relation} {claim['right']}{where}"
+
+
+def tally(judgements, *beginnings):
+    """The number of verdicts that begin so."""
+    return sum(verdict.startswith(beginnings) for _, (_, _, verdict) in judgements)
+
+
+def said_by_paper(source, values, claims):
+    numbers = f"prints {counted(len(values), 'number')} that can be compared"
+    if not claims:
+        return f"{source}, {numbers}."
+    more = [numbers] if values else []
+    if len(claims) > 1:
+        more.insert(0, f"makes {counted(len(claims) - 1, 'more claim')} of this kind")
+    return (f"{source}, says that {claim_in_words(claims[0][0])}"
+            + "".join(f", and {each}" for each in more) + ".")
+
+
+def answer_in_words(judgement):
+    """The verdict on one claim, with the difference that was measured."""
+    _, (difference, interval, verdict) = judgement
+    measured = number_text(difference) + ("" if interval is None else f" {interval_text(interval)}")
+    answer = {"holds": "it holds", "contradicted": "it is contradicted",
+              "undecided": "it is undecided"}.get(re.split("[ ,:]", verdict)[0],
+                                                  "it could not be measured")
+    return f"left minus right is {measured}, so {answer}"
+
+
+def found_by_us(values, claims):
+    found = [f"of the first claim {answer_in_words(claims[0])}"] if claims else []
+    if len(claims) > 1:
+        found.append(f"of all {len(claims)} claims, those that hold are {tally(claims, 'holds')}, "
+                     f"contradicted {tally(claims, 'contradicted')}, "
+                     f"undecided {tally(claims, 'undecided')}")
+    if values:
+        found.append(f"of {counted(len(values), 'printed number')} ours agree with "
+                     f"{tally(values, 'agrees')}")
+    return "We find: " + "; ".join(found) + "."
+
+
+def how_sure(printed, measured, values):
+    runs = sorted(len(rows) for rows in measured.runs.values())
+    ours = f"{runs[0]}" if runs[0] == runs[-1] else f"{runs[0]} to {runs[-1]}"
+    paper = (f"the paper has {printed['runs']}" if printed["runs"] else
+             "the paper does not say of how many its numbers are")
+    sentence = (f"How sure: each cell has {ours} complete runs ({paper}), cells are compared run by "
+                f"run, and intervals are at {LEVEL * 100:.0f} %")
+    for value, (mean, _, verdict) in values:
+        if value["cell"] == printed["baseline"] and verdict.startswith("not reproduced"):
+            return (sentence + f"; but the {value['metric'].replace('_', ' ')} of {value['cell']} "
+                    f"itself is {verdict.partition(': ')[2]}, so the paper's world must have been "
+                    "another, and only orders of filters can be compared.")
+    return sentence + "."
+
+
+def lead(printed, measured, values, claims):
+    """Three sentences as Markdown: what the paper says, what we find, how sure that is."""
+    of_paper = [[each for each in judgements if not each[0].get("note", "").startswith(OURS)]
+                for judgements in (values, claims)]
+    sentences = (said_by_paper(printed["source"], *of_paper), found_by_us(*of_paper),
+                 how_sure(printed, measured, of_paper[0]))
+    return textwrap.fill(" ".join(map(escaped, sentences)), 100, break_long_words=False,
+                         break_on_hyphens=False)
+
+
+def compare(printed, measured, batches):
+    """Prints the whole comparison, and returns its three sentences."""
+    values, claims = judged(printed, measured, batches)
+    print("## Printed and measured\n\n" + printed["source"])
     print_table(["cell", "metric", "paper printed", "we measure", "95 % interval", "verdict",
-                 "where"], values)
+                 "where"],
+                [[value["cell"], name_of_value(value), value["printed"], number_text(mean),
+                  interval_text(interval), verdict, value.get("note", "")]
+                 for value, (mean, interval, verdict) in values])
     print_table(["paper says", "we measure: left - right", "95 % interval", "verdict", "where"],
-                claims)
+                [[name_of_claim(claim), number_text(difference), interval_text(interval), verdict,
+                  claim["note"]] for claim, (difference, interval, verdict) in claims])
     of = (f"are means over {printed['runs']} runs" if printed["runs"] else
           "are taken as those of one run, since it does not say of how many they are")
     print(f"\nThe paper's numbers {of}. A printed "
@@ -411,6 +499,7 @@ def compare(printed, measured, batches):
         print("\nWhat the paper leaves open, and what is assumed:\n")
         for each in printed["assume"]:
             print("- " + re.sub(r"([\\|_~<>])", r"\\\1", each))
+    return lead(printed, measured, values, claims)
 
 
 if __name__ == "__main__":
@@ -419,10 +508,18 @@ if __name__ == "__main__":
     parser.add_argument("printed", help="the .printed file")
     parser.add_argument("folder", help="folder that analyze --csv wrote for the whole study")
     parser.add_argument("batch", nargs="*", help="folder that it wrote for a batch of runs")
+    parser.add_argument("--lead", metavar="FILE", help="file for three sentences, to be replaced")
     arguments = parser.parse_args()
     try:
-        compare(read_printed(arguments.printed), Measured(arguments.folder),
-                [Measured(batch) for batch in arguments.batch])
+        sentences = compare(read_printed(arguments.printed), Measured(arguments.folder),
+                            [Measured(batch) for batch in arguments.batch])
+        if arguments.lead:
+            with open(arguments.lead, "w", encoding="utf-8") as file:
+                file.write(sentences + "\n")
+    except OSError as error:
+        print(f"printed.py: {arguments.lead}: cannot be written ({error}): choose another file",
+              file=sys.stderr)
+        sys.exit(2)
     except PrintedError as error:
         print(f"printed.py: {error}", file=sys.stderr)
         sys.exit(2)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Errors of the estimates, cost of a run, and numbers of arithmetic fallbacks.
 #include "analysis/run/measured_run.hpp"
+#include "analysis/study/boxes.hpp"
 #include "analysis/study/cell_report.hpp"
 
 #include <algorithm>
@@ -91,7 +92,25 @@ Figure rmse_figure(const StudyAnalysis& study) {
   return figure;
 }
 
-std::vector<Figure> errors_figures(const StudyAnalysis& study) { return {rmse_figure(study)}; }
+/// Boxes of a score of the runs, times `factor`.
+Figure error_boxes(const StudyAnalysis& study, const char* name, const char* score,
+                   const char* label, double factor) {
+  std::vector<BoxRow> rows;
+  for (std::size_t i = 0; i < study.cells.size(); ++i) {
+    const CellAnalysis& cell = study.cells[i];
+    rows.push_back({cell.label, i, scaled(cell.scores.column(score), factor)});
+  }
+  Figure figure = figure_of(name);
+  add_boxes(rows, label, figure);
+  return figure;
+}
+
+std::vector<Figure> errors_figures(const StudyAnalysis& study) {
+  return {rmse_figure(study),
+          error_boxes(study, "position_boxes", "position_rmse", "position RMSE of a run [m]", 1.0),
+          error_boxes(study, "heading_boxes", "heading_rmse", "heading RMSE of a run [deg]",
+                      180.0 / kPi)};
+}
 
 }  // namespace
 

@@ -62,6 +62,14 @@ std::vector<Section> arranged(std::vector<Section> sections, std::vector<Figure>
     for (const std::string& name : place.figures) {
       if (auto figure = take(name, figures)) section.figures.push_back(std::move(*figure));
     }
+    for (std::size_t f = 0; f < figures.size() && !place.prefix.empty();) {
+      if (!figures[f].name.starts_with(place.prefix)) {
+        ++f;
+        continue;
+      }
+      section.figures.push_back(std::move(figures[f]));
+      figures.erase(figures.begin() + static_cast<std::ptrdiff_t>(f));
+    }
     page.push_back(titled(std::move(section)));
   }
   return page;

@@ -230,6 +230,10 @@ void RunReader::read(std::size_t i, RunRows& rows) const {
   read_path(i, rows.path);
   read_scans("map_size", 1, i, rows.map_size);
   read_scans("rotation_information", 1, i, rows.rotation_information);
+  read_scans("evolution_evaluations", 1, i, rows.evolution.evaluations);
+  read_scans("evolution_generations", 1, i, rows.evolution.generations);
+  read_scans("evolution_gain", 1, i, rows.evolution.gain);
+  read_scans("evolution_displacement", 1, i, rows.evolution.displacement);
   read_final_map(i, rows);
   read_joint(i, rows.joint);
   read_errors(i, rows.error);

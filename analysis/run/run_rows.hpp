@@ -53,6 +53,13 @@ struct AssociationRows {
   std::vector<double> correct, wrong, new_again, missed, clutter;
 };
 
+/// What differential evolution did at every scan (EQUATIONS (9.3)); empty where not stored. 0 where
+/// nothing evolved.
+struct EvolutionRows {
+  /// {scan} evaluations of the fitness; means over the populations of the others.
+  std::vector<double> evaluations, generations, gain, displacement;
+};
+
 /// Estimate of pose and map together at the scans of ResultDescription::joint_scans; empty if not
 /// stored.
 struct JointRows {
@@ -115,6 +122,7 @@ struct RunRows {
   std::vector<double> map_size;  ///< {scan} number of landmarks in the map
   /// {scan} [1/rad^2] information about the heading of path and map; empty if not stored.
   std::vector<double> rotation_information;
+  EvolutionRows evolution;
   std::optional<FinalMap> final_map;  ///< map at the last scan, if stored and whole
   JointRows joint;
   ErrorRows error;        ///< errors of imported estimates

@@ -2,6 +2,7 @@
 #include "analysis/statistics/bootstrap.hpp"
 
 #include "analysis/statistics/distributions.hpp"
+#include "analysis/statistics/quantile.hpp"
 #include "analysis/statistics/spread.hpp"
 #include "engine/errors.hpp"
 #include "engine/numbers/lanes.hpp"
@@ -31,17 +32,6 @@ double bias_deviate(const std::vector<double>& means, double mean) {
   for (const double one : means) below += one < mean ? 1.0 : one == mean ? 0.5 : 0.0;
   const auto n = static_cast<double>(means.size());
   return normal_quantile(std::clamp(below / n, 0.5 / n, 1.0 - 0.5 / n));
-}
-
-/// The value below which a share `p` of the replicates lies, interpolated between its neighbours.
-/// Sorts `means` only as far as needed.
-double quantile_of(std::vector<double>& means, double p) {
-  const auto last = static_cast<double>(means.size() - 1);
-  const double place = std::clamp(p * (last + 1.0) - 0.5, 0.0, last);
-  const auto low = means.begin() + static_cast<std::ptrdiff_t>(place);
-  std::ranges::nth_element(means, low);
-  const auto high = low + 1 == means.end() ? low : std::min_element(low + 1, means.end());
-  return std::lerp(*low, *high, place - std::floor(place));
 }
 
 Interval accelerated_interval(std::vector<double>& means, const SampleShape& shape,

@@ -52,6 +52,7 @@ struct CellAnalysis {
   std::string filter;
   std::string long_name;
   std::size_t particles = 0;  ///< number of particles; 0 if it is not a particle filter
+  std::vector<std::pair<std::string, std::string>> settings;  ///< resolved settings of the filter
   std::size_t complete = 0;
   std::size_t missing = 0;
   /// Number of runs that were not needed because the cell was precise enough or its verdict was

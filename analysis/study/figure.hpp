@@ -98,6 +98,8 @@ struct ChartPanel {
   /// The columns of a figure without curves. Column k extends from x[k] to x[k + 1], the last one
   /// to Chart::x_to.
   ChartStrips strips = {};
+  /// Names of the places 0, 1, ... of the vertical axis, from top to bottom, instead of numbers.
+  std::vector<std::string> names = {};
 };
 
 /// Contents of a figure, drawn by gnuplot for print and by the page's script for the screen. All
@@ -114,6 +116,9 @@ struct Chart {
   double aspect = 0.0;    ///< height of a panel divided by its width; 0: the usual one
   double height = 0.0;  ///< [px] height of a panel in print, if it has no aspect; 0: the usual one
   bool is_map = false;  ///< whether both directions have one scale, at any zoom
+  bool x_logarithmic = false;
+  /// Names of the places 0, 1, ... of the horizontal axis, instead of numbers.
+  std::vector<std::string> x_names = {};
 };
 
 /// Thins a frame to at most 2 x `buckets` values of each column: the least and the greatest of

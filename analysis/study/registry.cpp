@@ -21,7 +21,8 @@ Metric errors_metric(), consistency_metric(), verdict_metric(), families_metric(
     association_metric(), references_metric(), drive_metric(), beacons_metric(), bound_metric(),
     map_errors_metric(), joint_nees_metric(), error_envelopes_metric(), innovations_metric(),
     diversity_metric(), calibration_metric(), cost_metric(), convention_hints_metric(),
-    smoother_metric(), proper_scores_metric(), observability_metric();
+    smoother_metric(), proper_scores_metric(), observability_metric(), evolution_metric(),
+    sweep_metric();
 
 std::span<const Metric> all_metrics() {
   // The order is that of their numbers in files.
@@ -34,7 +35,7 @@ std::span<const Metric> all_metrics() {
       joint_nees_metric,       error_envelopes_metric, innovations_metric,
       diversity_metric,        calibration_metric,     cost_metric,
       convention_hints_metric, smoother_metric,        proper_scores_metric,
-      observability_metric};
+      observability_metric,    evolution_metric,       sweep_metric};
   static const std::vector<Metric> all = [] {
     std::vector<Metric> made;
     for (Metric (*make)() : kMakers) made.push_back(make());

@@ -73,6 +73,8 @@ struct SectionPlace {
   std::string section;
   std::vector<std::string> figures = {};  ///< figures before the one with the name of the section
   Section::Shown shown = Section::Shown::folded;  ///< state on the page
+  /// Beginning of the names of further figures, of which a study may have any number.
+  std::string prefix = {};
 };
 
 /// The order of the sections on the page and on a terminal. Sections and figures without a place

@@ -82,6 +82,7 @@ struct CellTask {
     cell.filter = stored.filter;
     cell.long_name = stored.long_name;
     cell.particles = stored.particles;
+    cell.settings = stored.settings;
     if (!file.has_sums()) complete = complete_runs(file, stored, runs, cell);
   }
 

@@ -32,6 +32,7 @@ struct ColumnSelection {
   bool final_map = false;
   bool joint = false;  ///< columns joint_mean and joint_covariance of filters with a joint estimate
   bool observability = false;    ///< columns about observability that filters declare themselves
+  bool evolution = false;        ///< columns about evolution that filters declare themselves
   std::size_t joint_scans = 16;  ///< record.joint_scans: number of scans (joint_scans_of())
   bool scans_only = false;       ///< record.rate = scan: rows of `time` only at scans
   /// record.full_runs: number of first runs of the study that are stored with the columns of

@@ -77,6 +77,7 @@ constexpr ColumnGroup kGroups[] = {{"pose", nullptr},
                                    {"final_map", &ColumnSelection::final_map},
                                    {"joint", &ColumnSelection::joint},
                                    {"observability", &ColumnSelection::observability},
+                                   {"evolution", &ColumnSelection::evolution},
                                    {"sums", &ColumnSelection::sums}};
 
 bool has_mixture(const Cell& cell) { return cell.reports.mixture; }

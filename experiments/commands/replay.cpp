@@ -31,6 +31,7 @@ std::string all_columns(const Study& study) {
   if (identities_of(study) == 0) std::erase(columns, "association");
   if (!objection_to_joint(study).empty()) std::erase(columns, "joint");
   if (!objection_to_observability(study).empty()) std::erase(columns, "observability");
+  if (!objection_to_evolution(study).empty()) std::erase(columns, "evolution");
   return joined(columns, ", ");
 }
 

@@ -262,15 +262,29 @@ std::string objection_to_joint(const Study& study) {
          "large): take joint out, or set association.kind = known in a simulation";
 }
 
-std::string objection_to_observability(const Study& study) {
-  const auto reports_it = [&](const CellSpec& cell) {
+namespace {
+
+/// Returns whether a filter of the study declares columns of this group.
+bool has_own_columns(const Study& study, std::string_view group) {
+  return std::ranges::any_of(study.cells, [&](const CellSpec& cell) {
     const Capabilities reports = capabilities_of(cell, study);
-    return std::ranges::count(reports.own_columns, "observability", &OwnColumn::group) > 0;
-  };
-  if (std::ranges::any_of(study.cells, reports_it)) return {};
+    return std::ranges::count(reports.own_columns, group, &OwnColumn::group) > 0;
+  });
+}
+
+}  // namespace
+
+std::string objection_to_observability(const Study& study) {
+  if (has_own_columns(study, "observability")) return {};
   return "(no cell reports the information of its detections about the common heading): take "
          "observability out, or add a cell of ekf_slam or riekf_slam with a sensor of which one "
          "detection fixes a landmark";
+}
+
+std::string objection_to_evolution(const Study& study) {
+  if (has_own_columns(study, "evolution")) return {};
+  return "(no cell's filter evolves anything): take evolution out, or add a cell of de_srcd or "
+         "ampf_de";
 }
 
 namespace {
@@ -322,6 +336,7 @@ StudyPlan make_plan(const Study& study, std::optional<RunRange> range, ExternalP
   if (plan.columns.joint) refuse_column(study, "joint", objection_to_joint(study));
   if (plan.columns.observability)
     refuse_column(study, "observability", objection_to_observability(study));
+  if (plan.columns.evolution) refuse_column(study, "evolution", objection_to_evolution(study));
   plan.drives = drives_of(study, plan.seed);
   refuse_judging_from(study, plan.drives->itinerary());
   plan.own_landmarks = own_landmarks_of(study, plan.seed);

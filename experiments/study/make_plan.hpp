@@ -28,9 +28,10 @@ RunRange parse_shard(const std::string& text, std::uint64_t runs, std::uint64_t 
 /// remedy"; empty if it can.
 std::string objection_to_joint(const Study& study);
 
-/// The reason why the study cannot store the column observability, in the form of
+/// The reasons why the study cannot store the columns observability and evolution, in the form of
 /// objection_to_joint(); empty if it can.
 std::string objection_to_observability(const Study& study);
+std::string objection_to_evolution(const Study& study);
 
 /// Makes the plan of a study: its drives and its filters, for all runs or those in `range`. Filters
 /// that are external programs cannot be made unless `programs` allows it. Throws StudyError if

@@ -134,9 +134,17 @@ struct EvolutionScratch {
 
 /// The fittest member, the first of equals, and its fitness.
 template <class Real, std::size_t D>
-struct Evolved {
+struct Fittest {
   std::array<Real, D> best;
   Real fitness;
+};
+
+/// The fittest member after evolution, and what evolution changed.
+template <class Real, std::size_t D>
+struct Evolved : Fittest<Real, D> {
+  Real generations{0.0};   ///< number of generations until the evolution ended
+  Real gain_of_best{0.0};  ///< fitness of the best minus that of the first member before evolution
+  Real mean_gain{0.0};     ///< mean over all members of their fitness, after minus before evolution
 };
 
 /// Least number of members for which the members of a trial can all differ (EQUATIONS 9).
@@ -152,7 +160,7 @@ using Population = std::span<std::array<Real, D>>;
 /// Returns the best member and the worst fitness.
 template <class Real, std::size_t D>
 struct Ranking {
-  Evolved<Real, D> leader;
+  Fittest<Real, D> leader;
   Real worst;
 
   Ranking(Population<Real, D> population, const std::vector<Real>& fitness)
@@ -246,6 +254,14 @@ auto one_by_one(const auto& objective) {
   };
 }
 
+/// Sum of the fitness of all members.
+template <class Real>
+Real sum_of_fitness(const std::vector<Real>& fitness) {
+  Real sum(0.0);
+  for (const Real& one : fitness) sum += one;
+  return sum;
+}
+
 /// Differential evolution (EQUATIONS 9): moves `population` towards greater fitness and returns the
 /// best member. `evaluate(candidates, fitness)` writes the fitness of a candidate for each member;
 /// lanes that it never writes stop before the first generation. If `Real` is Lanes, every lane
@@ -257,13 +273,20 @@ Evolved<Real, D> evolve(std::span<std::array<Real, D>> population, const SearchB
                         EvolutionScratch<Real, D>& scratch, const Evaluate& evaluate) {
   scratch.start(population.size());
   evaluate(std::span<const std::array<Real, D>>(population), std::span(scratch.fitness));
+  const Real first = scratch.fitness.front(), before = sum_of_fitness(scratch.fitness);
+  Real generations(0.0);
   evolution::Ranking<Real, D> ranking(population, scratch.fitness);
-  if (population.size() < least_population(settings.base)) return ranking.leader;
-  for (std::size_t g = 0; g < settings.generations && any(ranking.goes_on(settings)); ++g) {
+  const bool can_evolve = population.size() >= least_population(settings.base);
+  for (std::size_t g = 0; can_evolve && g < settings.generations; ++g) {
+    const auto goes_on = ranking.goes_on(settings);
+    if (!any(goes_on)) break;
+    generations += select(goes_on, Real(1.0), Real(0.0));
     evolution::next_generation(population, g, ranking, box, settings, draws, scratch, evaluate);
     ranking = evolution::Ranking<Real, D>(population, scratch.fitness);
   }
-  return ranking.leader;
+  const Real gain = sum_of_fitness(scratch.fitness) - before;
+  return {ranking.leader, generations, ranking.leader.fitness - first,
+          gain / Real(static_cast<double>(population.size()))};
 }
 
 }  // namespace montecarta::filters

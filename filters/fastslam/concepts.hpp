@@ -137,6 +137,13 @@ concept KeepsGaussians = requires(P p, const PoseMoments& start) {
   p.begin_step();  // the particles of the last scan have been resampled, where that was due
 };
 
+/// A proposal that reports columns of its own (FilterKind::reports).
+template <class P>
+concept HasOwnColumns = requires(P p, const P now) {
+  p.begin_report();  // begins a scan, at which it has nothing to report yet
+  { now.own_columns() } -> Is<std::span<const double>>;  // in a member, complete after end_scan()
+};
+
 /// A proposal that has work to do for all particles together, between association and refinement.
 template <class P, class Real, class A>
 concept PreparesScan = requires(P p, const StepContext& context, const A& a,

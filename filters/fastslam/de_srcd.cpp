@@ -41,20 +41,21 @@ EvolvedSettings evolved_settings(const FilterOptions& options) {
 }
 
 FilterKind de_srcd_kind() {
-  return {.name = "de_srcd",
-          .long_name = "DE-SRCD-FastSLAM",
-          .source = "Ankishan et al. 2016; EQUATIONS 10",
-          .reports = {.particles = true, .mixture = true},
-          .options = population_options(
-              {options_of_evolution(), central_difference_options(), {map_uncertainty_option()}}),
-          .takes_prior = true,
-          .takes_fixes = true,
-          .restrict_reports =
-              [](const FilterSetup& setup, Capabilities& reports) {
-                const EvolutionMode mode = evolved_settings(setup.options).mode;
-                if (weight_time(mode) == WeightTime::after_draw) reports.mixture = false;
-              },
-          .make = make_de_srcd<Lanes>};
+  return {
+      .name = "de_srcd",
+      .long_name = "DE-SRCD-FastSLAM",
+      .source = "Ankishan et al. 2016; EQUATIONS 10",
+      .reports = {.particles = true, .mixture = true, .own_columns = EvolutionReport::columns()},
+      .options = population_options(
+          {options_of_evolution(), central_difference_options(), {map_uncertainty_option()}}),
+      .takes_prior = true,
+      .takes_fixes = true,
+      .restrict_reports =
+          [](const FilterSetup& setup, Capabilities& reports) {
+            const EvolutionMode mode = evolved_settings(setup.options).mode;
+            if (weight_time(mode) == WeightTime::after_draw) reports.mixture = false;
+          },
+      .make = make_de_srcd<Lanes>};
 }
 
 }  // namespace montecarta::filters

@@ -42,7 +42,9 @@ class EvolvedProposal : public RefinedCloud<Real, SigmaPoints, SigmaPoints> {
                   const SigmaPoints& points)
       : Cloud(particles, belief, weight_time(settings.mode), points, points),
         settings_(settings),
-        centres_(blocks_for<Real>(particles)) {
+        particles_(particles),
+        centres_(blocks_for<Real>(particles)),
+        found_(centres_.size()) {
     if (settings.mode != EvolutionMode::unbiased) return;
     for (std::size_t i = 0; i < particles; i += kLanesOf<Real>)
       own_.emplace_back(std::min(particles - i, kLanesOf<Real>), settings.population);
@@ -67,8 +69,8 @@ class EvolvedProposal : public RefinedCloud<Real, SigmaPoints, SigmaPoints> {
                                ? CloudEvolution<Real>::Objective::likelihood
                                : CloudEvolution<Real>::Objective::posterior;
     cloud_.gather(context, association, weights, predicted, this->noise());
-    cloud_.evolve(objective, settings_.bounds, settings_.evolution,
-                  context.identity(Draw::evolution, 0), centres_);
+    report_.add(cloud_.evolve(objective, settings_.bounds, settings_.evolution,
+                              context.identity(Draw::evolution, 0), centres_));
   }
 
   /// Refines the pose, and in mode unbiased searches for the most probable one near it.
@@ -83,9 +85,10 @@ class EvolvedProposal : public RefinedCloud<Real, SigmaPoints, SigmaPoints> {
     Refined refined{predicted, posterior, posterior.mean, evidence, PoseFactor<Real>(posterior)};
     if (settings_.mode == EvolutionMode::shared) refined.centre = centres_[b];
     if (settings_.mode == EvolutionMode::unbiased) {
-      const auto [e0, e1, e2] = own_[b].most_probable(
-          association, b, predicted, posterior, this->noise(), settings_.bounds,
-          settings_.evolution, Cloud::identity(context, Draw::evolution, b));
+      found_[b] = own_[b].most_probable(association, b, predicted, posterior, this->noise(),
+                                        settings_.bounds, settings_.evolution,
+                                        Cloud::identity(context, Draw::evolution, b));
+      const auto [e0, e1, e2] = found_[b].offset;
       refined.centre = refined.factor.at(e0, e1, e2);
     }
     return refined;
@@ -114,15 +117,31 @@ class EvolvedProposal : public RefinedCloud<Real, SigmaPoints, SigmaPoints> {
     return {drawn.log_density() + ratio, faults};
   }
 
+  void begin_report() { report_.begin_scan(); }
+  std::span<const double> own_columns() const { return report_.values(); }
+
+  void end_scan() {
+    Cloud::end_scan();
+    // Particles that match nothing have no members, and have not evolved.
+    for (std::size_t i = 0; i < particles_ && settings_.mode == EvolutionMode::unbiased; ++i) {
+      const MostProbable<Real>& found = found_[i / kLanesOf<Real>];
+      if (found.members > 0) report_.add(found.effect(i % kLanesOf<Real>));
+    }
+    report_.end_scan();
+  }
+
  private:
   bool has_importance_ratio() const {
     return weight_time(settings_.mode) == WeightTime::after_draw;
   }
 
   EvolvedSettings settings_;
-  std::vector<BasicPose<Real>> centres_;  ///< {block} poses to which the cloud moved
-  std::vector<OwnEvolution<Real>> own_;   ///< {block} evolution of its particles in mode unbiased
+  std::size_t particles_;
+  std::vector<BasicPose<Real>> centres_;   ///< {block} poses to which the cloud moved
+  std::vector<OwnEvolution<Real>> own_;    ///< {block} evolution of its particles in mode unbiased
+  std::vector<MostProbable<Real>> found_;  ///< {block} what own_ found at the last scan
   CloudEvolution<Real> cloud_;
+  EvolutionReport report_;
 };
 
 /// Reads the options of the evolution.

@@ -63,6 +63,10 @@ class FastSlam final : public SlamFilter {
     now_ = context;
     resample();
     population_.begin_scan();
+    if constexpr (HasOwnColumns<Proposal>) {
+      proposal_.begin_report();
+      population_.report().own = proposal_.own_columns();
+    }
     predict_poses(context);
     if (fix_) use_fix(context);
     association_.associate(context, scan, maps_, predicted_);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "filters/evolution/differential_evolution.hpp"
+#include "filters/evolution/evolution_report.hpp"
 #include "filters/population/population.hpp"
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace montecarta::filters {
@@ -131,6 +133,22 @@ class PackedCandidates {
   std::vector<std::uint32_t> place_of_;  ///< member and lane of every packed candidate
 };
 
+/// What the particles of one block found by their own evolution (EQUATIONS 10).
+template <class Real>
+struct MostProbable {
+  std::array<Real, 3> offset{Real(0.0), Real(0.0), Real(0.0)};  ///< in standard deviations
+  Real generations{0.0};  ///< number of generations until the evolution ended
+  Real gain{0.0};         ///< log density of the pose found minus that of the refined mean
+  std::size_t members = 0;
+
+  /// The effect of the evolution of the particle in `lane`.
+  EvolutionEffect effect(std::size_t lane) const {
+    const auto [e0, e1, e2] = offset;
+    return {members, get(generations, lane), get(gain, lane),
+            get(sqrt(e0 * e0 + e1 * e1 + e2 * e2), lane)};
+  }
+};
+
 /// Evolves a separate population for every particle of one block, in units of standard deviations
 /// of the particle's refined Gaussian (EQUATIONS 10).
 template <class Real>
@@ -144,13 +162,13 @@ class OwnEvolution {
   /// standard deviations of `refined`, for each particle of block b. `predicted` is the prior, and
   /// `association` has the matches of the scan.
   template <class Associating>
-  std::array<Real, 3> most_probable(const Associating& association, std::size_t b,
-                                    const PoseGaussian<Real>& predicted,
-                                    const PoseGaussian<Real>& refined, const SensorNoise& noise,
-                                    double bounds, const EvolutionSettings& settings,
-                                    const StreamIdentity& chance) {
+  MostProbable<Real> most_probable(const Associating& association, std::size_t b,
+                                   const PoseGaussian<Real>& predicted,
+                                   const PoseGaussian<Real>& refined, const SensorNoise& noise,
+                                   double bounds, const EvolutionSettings& settings,
+                                   const StreamIdentity& chance) {
     look(association, b, predicted, refined, noise);
-    if (scan_.empty()) return {Real(0.0), Real(0.0), Real(0.0)};
+    if (scan_.empty()) return {};
     begin(bounds, chance);
     const Real bound(bounds);
     const SearchBox<Real, 3> box{{Real(0.0), Real(0.0), Real(0.0)}, {bound, bound, bound}, {}};
@@ -160,7 +178,8 @@ class OwnEvolution {
       evaluate(candidates, fitness);
     };
     const EvolutionDraws draws{chance, used};
-    return evolve<Real, 3>(population_, box, settings, draws, scratch_, evaluation).best;
+    const auto found = evolve<Real, 3>(population_, box, settings, draws, scratch_, evaluation);
+    return {found.best, found.generations, found.gain_of_best, population_.size()};
   }
 
  private:
@@ -253,18 +272,25 @@ class CloudEvolution {
     }
   }
 
-  /// Evolves within `bounds` standard deviations of the cloud; writes the resulting poses.
-  void evolve(Objective objective, double bounds, const EvolutionSettings& settings,
-              const StreamIdentity& identity, std::vector<BasicPose<Real>>& poses) {
+  /// Evolves within `bounds` standard deviations of the cloud; replaces the predicted `poses` by
+  /// the resulting ones.
+  EvolutionEffect evolve(Objective objective, double bounds, const EvolutionSettings& settings,
+                         const StreamIdentity& identity, std::vector<BasicPose<Real>>& poses) {
     const auto evaluate = [&](Members members, std::span<double> fitness) {
       for (std::size_t b = 0; b < fitness_.size(); ++b) {
         const Real fit = fitness_of_block(objective, b, block_of_poses(members, b));
         for (std::size_t i = b * kLanes; i < end_of(b); ++i) fitness[i] = get(fit, i % kLanes);
       }
     };
-    filters::evolve<double, 3>(population_, box(bounds), settings, EvolutionDraws{identity},
-                               scratch_, evaluate);
-    for (std::size_t b = 0; b < poses.size(); ++b) poses[b] = block_of_poses(population_, b);
+    const auto evolved = filters::evolve<double, 3>(population_, box(bounds), settings,
+                                                    EvolutionDraws{identity}, scratch_, evaluate);
+    double way = 0.0;
+    for (std::size_t b = 0; b < poses.size(); ++b) {
+      const BasicPose<Real> before = std::exchange(poses[b], block_of_poses(population_, b));
+      way += sum_of_distances(b, before, poses[b]);
+    }
+    return {population_.size(), evolved.generations, evolved.mean_gain,
+            way / static_cast<double>(population_.size())};
   }
 
  private:
@@ -273,6 +299,18 @@ class CloudEvolution {
 
   /// Index after the last particle of block b.
   std::size_t end_of(std::size_t b) const { return std::min((b + 1) * kLanes, population_.size()); }
+
+  /// Sum over the particles of block b of their distance from `before` to `after`, in standard
+  /// deviations of the cloud.
+  double sum_of_distances(std::size_t b, const BasicPose<Real>& before,
+                          const BasicPose<Real>& after) const {
+    const PoseDensity<Real> spread(
+        PoseGaussian<Real>{before, in_every_lane<Real>(symmetric_of(moments_.covariance))});
+    const Real distances = sqrt(spread.squared_distance(after));
+    double sum = 0.0;
+    for (std::size_t i = b * kLanes; i < end_of(b); ++i) sum += get(distances, i % kLanes);
+    return sum;
+  }
 
   Real fitness_of_block(Objective objective, std::size_t b, const BasicPose<Real>& pose) const {
     const std::size_t scan_size = matched_.size() / fitness_.size();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "filters/evolution/evolution_report.hpp"
 #include "filters/marginal/shared_map.hpp"
 
 #include <algorithm>
@@ -156,6 +157,9 @@ class MapLearning {
   MapLearning(const MapSettings& settings, const SensorNoise& noise)
       : settings_(settings), noise_(noise) {}
 
+  /// Returns whether the positions of landmarks evolve.
+  bool evolves() const { return settings_.solver == MapSolver::de; }
+
   /// A landmark observed for the first time: the mean of the positions given by the particles, with
   /// the information of one detection.
   SharedLandmark initialised(const StepContext& context, const std::vector<BasicPose<Real>>& poses,
@@ -173,10 +177,11 @@ class MapLearning {
   }
 
   /// Updates a landmark that is observed again. `index` selects its random numbers; candidates are
-  /// placed along and across `heading` [rad], so that a rotated world is searched alike.
+  /// placed along and across `heading` [rad], so that a rotated world is searched alike. What
+  /// evolution does is added to `report`.
   void learn(const StepContext& context, std::uint32_t index, double heading,
              const std::vector<BasicPose<Real>>& poses, const Weights<Real>& weights,
-             const RangeBearing<double>& seen, SharedLandmark& landmark) {
+             const RangeBearing<double>& seen, SharedLandmark& landmark, EvolutionReport& report) {
     evidence_.look(poses, weights, seen, noise_, settings_.objective);
     prior_ = settings_.mode == MapMode::recursive ? landmark : SharedLandmark{landmark.mean, {}};
     if (settings_.mode == MapMode::onestep_threshold &&
@@ -184,7 +189,8 @@ class MapLearning {
       return;  // the landmark is in the dead zone of EQUATIONS 14
     }
     landmark.mean = settings_.solver == MapSolver::de
-                        ? evolved_place(context.identity(Draw::evolution, index), heading, seen)
+                        ? evolved_place(context.identity(Draw::evolution, index), heading, seen,
+                                        landmark.information, report)
                         : gauss_newton_place();
     const Symmetric2<double> more = evidence_.information(landmark.mean);
     if (!(more.xx > 0.0)) return;  // all poses coincide with the landmark
@@ -231,8 +237,10 @@ class MapLearning {
 
   /// Differential evolution over offsets from the old position, which is the first member. The
   /// others are uniform within three standard deviations of the sensor (EQUATIONS 14).
+  /// `known` is the information about the landmark before the scan.
   Point evolved_place(const StreamIdentity& identity, double heading,
-                      const RangeBearing<double>& seen) {
+                      const RangeBearing<double>& seen, const Symmetric2<double>& known,
+                      EvolutionReport& report) {
     const Direction<double> ahead = direction_of(heading);
     const double half =
         3.0 * std::max(std::sqrt(noise_.first), seen.range * std::sqrt(noise_.second));
@@ -248,7 +256,12 @@ class MapLearning {
     const auto fittest = evolve<double, 2>(
         population_, box, evolution, draws, scratch_,
         one_by_one([&](std::size_t, const Offset& o) { return -cost(place(o)); }));
-    return place(fittest.best);
+    const Point found = place(fittest.best);
+    const double dx = found.x - prior_.mean.x, dy = found.y - prior_.mean.y;
+    // The fitness is on the scale of a chi-square, twice that of a log-likelihood.
+    report.add({population_.size(), fittest.generations, 0.5 * fittest.gain_of_best,
+                std::sqrt(known.xx * dx * dx + 2.0 * known.xy * dx * dy + known.yy * dy * dy)});
+    return found;
   }
   void scatter(const StreamIdentity& identity, double half) {
     population_.assign(settings_.population, Offset{});

@@ -53,6 +53,8 @@ class MarginalFilter final : public SlamFilter {
     associate(scan);
     population_.begin_scan();
     population_.report().association = association_.counts();
+    report_.begin_scan();
+    if (learning_.evolves()) population_.report().own = report_.values();
     if (!association_.matched_nothing()) learn(context);  // otherwise the kernels keep growing
     population_.report().map_size = static_cast<double>(map_.size());
   }
@@ -154,7 +156,8 @@ class MarginalFilter final : public SlamFilter {
     const double heading = weighted_mean<Real>(context, weights(), drawn).heading;
     for (const SharedMatch& match : association_.matches())
       learning_.learn(context, match.landmark, heading, poses_, weights(), match.seen,
-                      map_[match.landmark]);
+                      map_[match.landmark], report_);
+    report_.end_scan();
     for (const Detection& fresh : association_.fresh()) {
       association_.add(fresh.identity);
       map_.push_back(learning_.initialised(context, poses_, weights(), observation_of(fresh)));
@@ -180,6 +183,7 @@ class MarginalFilter final : public SlamFilter {
   SharedAssociation association_;
   SharedLikelihood<Real> likelihood_;
   MapLearning<Real> learning_;
+  EvolutionReport report_;  ///< of the evolution of the map, if there is one
   KernelRatios<Real> ratios_;
   MotionIncrement motion_;
   Population<Real> population_;  ///< the particles, whose weights are w

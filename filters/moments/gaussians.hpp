@@ -240,10 +240,14 @@ class PoseDensity {
   }
 
   Real operator()(const BasicPose<Real>& pose) const {
+    return -0.5 * squared_distance(pose) - log_determinant_;
+  }
+  /// Square of the distance of `pose` from the mean, in standard deviations.
+  Real squared_distance(const BasicPose<Real>& pose) const {
     const Real a = (pose.x - mean_.x) / L_.xx;
     const Real b = (pose.y - mean_.y - L_.yx * a) / L_.yy;
     const Real h = (wrap(Real(pose.heading - mean_.heading)) - L_.hx * a - L_.hy * b) / L_.hh;
-    return -0.5 * (a * a + b * b + h * h) - log_determinant_;
+    return a * a + b * b + h * h;
   }
 
  private:

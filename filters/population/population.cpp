@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/population/population.hpp"
 
+#include "filters/models/ackermann.hpp"
+
 namespace montecarta::filters {
 namespace {
 

@@ -148,6 +148,51 @@ class Printed(unittest.TestCase):
         self.assertEqual(called.returncode, 2)
         self.assertIn("printed.py: absent.printed: cannot be read", called.stderr)
 
+    def lead(self, text, measured):
+        with contextlib.redirect_stdout(io.StringIO()):
+            return " ".join(printed.compare(self.says(text), measured, ()).split())
+
+    def test_three_sentences_lead_to_the_comparison(self):
+        measured = self.measured({"a": np.tile([1.0, 3.0], 50), "b": np.tile([2.0, 4.5], 50)})
+        text = ("source = A paper, 2016; Table 1\nruns = 20\n"
+                'claim = position_rmse a < b note="Fig. 3"\n'
+                "claim = position_rmse b < a\n"
+                'claim = position_rmse a > b note="not in the paper: ours"\n'
+                "value = cell=a metric=position_rmse printed=2\n"
+                "value = cell=b metric=position_rmse printed=99\n")
+        self.assertEqual(self.lead(text, measured), " ".join((
+            "A paper, 2016; Table 1, says that the position rmse of a is less than that of b "
+            "(Fig. 3), and makes 1 more claim of this kind, and prints 2 numbers that can be "
+            "compared.",
+            "We find: of the first claim left minus right is -1.25 \\[-1.3, -1.2\\], so it holds; "
+            "of all 2 claims, those that hold are 1, contradicted 1, undecided 0; of 2 printed "
+            "numbers ours agree with 1.",
+            "How sure: each cell has 100 complete runs (the paper has 20), cells are compared run "
+            "by run, and intervals are at 95 %.")))
+
+    def test_the_sentences_say_that_the_paper_had_another_world(self):
+        measured = self.measured({"a": [1.0] * 20, "b": [9.0] * 5})
+        lead = self.lead("source = A paper\nbaseline = a\n"
+                         "value = cell=a metric=position_rmse printed=4", measured)
+        self.assertIn("A paper, prints 1 number that can be compared.", lead)
+        self.assertIn("each cell has 5 to 20 complete runs (the paper does not say of how many its",
+                      lead)
+        self.assertIn("but the position rmse of a itself is 4 times smaller, so", lead)
+
+    def test_the_sentences_are_written_to_a_file(self):
+        self.measured({"a": [1.0, 2.0], "b": [2.0, 4.0]})
+        path = self.write("paper.printed", "source = A paper\nclaim = position_rmse a < b\n")
+        script = os.path.join(SOURCE, "experiments/printed.py")
+        call = [sys.executable, "-B", script, path, os.path.join(self.folder, "all"), "--lead"]
+        to = os.path.join(self.folder, "lead.md")
+        subprocess.run(call + [to], stdout=subprocess.PIPE, check=True)
+        with open(to, encoding="utf-8") as file:
+            self.assertTrue(file.read().startswith("A paper, says that the position rmse of a"))
+        failed = subprocess.run(call + [os.path.join(to, "no")], stdout=subprocess.PIPE,
+                                stderr=subprocess.PIPE, text=True, check=False)
+        self.assertEqual(failed.returncode, 2)
+        self.assertIn("cannot be written", failed.stderr)
+
     def test_every_file_beside_a_study_is_understood_and_names_its_cells(self):
         files = glob.glob(os.path.join(SOURCE, "experiments/studies/*.printed"))
         self.assertGreater(len(files), 5)

@@ -29,9 +29,18 @@ constexpr std::size_t kStripKeyHeight = 42;
 
 bool has_strips(const Chart& chart) { return !chart.panels.front().strips.rows.empty(); }
 
-/// Room left and right of a panel. Strips have as much room as their names and notes need.
+/// Returns whether the vertical axis has names in place of numbers.
+bool has_names(const ChartPanel& panel) { return !panel.names.empty(); }
+
+/// Number of rows with a name: strips, or places with names; 0 if the vertical axis has numbers.
+std::size_t named_rows(const ChartPanel& panel) {
+  return panel.names.size() + panel.strips.rows.size();
+}
+
+/// Room left and right of a panel. Rows have as much room as their names and notes need.
 std::array<double, 2> side_rooms(const Chart& chart, bool headings) {
-  if (!has_strips(chart)) return {headings ? kNarrowAxisRoom : kAxisRoom, kRightRoom};
+  if (named_rows(chart.panels.front()) == 0)
+    return {headings ? kNarrowAxisRoom : kAxisRoom, kRightRoom};
   std::size_t name = 0, note = 0;
   for (const ChartPanel& panel : chart.panels) {
     note = std::max(note, panel.strips.notes.size());
@@ -39,14 +48,15 @@ std::array<double, 2> side_rooms(const Chart& chart, bool headings) {
       name = std::max(name, row.name.size());
       note = std::max(note, row.note.size());
     }
+    for (const std::string& row : panel.names) name = std::max(name, row.size());
   }
   return {kRightRoom + kCharacter * static_cast<double>(name),
           kRightRoom + kCharacter * static_cast<double>(note)};
 }
 
 double panel_height(const Chart& chart, double panel_width) {
-  const std::size_t strips = chart.panels.front().strips.rows.size();
-  if (strips > 0) return kStripPitch * static_cast<double>(strips);
+  const std::size_t rows = named_rows(chart.panels.front());
+  if (rows > 0) return kStripPitch * static_cast<double>(rows);
   if (chart.aspect > 0.0) return chart.aspect * panel_width;
   if (chart.height > 0.0) return chart.height;
   return chart.panels.size() == 1 ? kSingleHeight : kUsualHeight;
@@ -56,6 +66,7 @@ double panel_height(const Chart& chart, double panel_width) {
 /// beside its axis.
 bool has_headings(const Chart& chart, std::size_t columns) {
   if (columns > 1 || !chart.panels.front().cell.empty() || has_strips(chart)) return true;
+  if (has_names(chart.panels.front())) return false;
   return chart.aspect == 0.0 && std::ranges::any_of(chart.panels, [&](const ChartPanel& panel) {
            return kCharacter * static_cast<double>(panel.label.size()) > panel_height(chart, 0.0);
          });
@@ -281,13 +292,24 @@ std::string range(const char* axis, double from, double to) {
          "]\n";
 }
 
+/// Ticks at 0, 1, ... that have these names, or none unless they are `shown`.
+std::string named_ticks(const std::vector<std::string>& names, bool shown = true) {
+  std::string ticks;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    ticks += (k == 0 ? "" : ", ") + gnuplot_quoted(shown ? names[k] : "") + " " + std::to_string(k);
+  }
+  return "(" + ticks + ")";
+}
+
 /// Commands for the horizontal axis of a panel. If all columns have one label, common_label() puts
 /// it below the drawing.
 std::string horizontal_axis(const Chart& chart, const PanelBox& box) {
   const std::string label = box.is_alone_in_row
                                 ? "set xlabel " + gnuplot_quoted(chart.x_label) + " offset 0,0.4\n"
                                 : "unset xlabel\n";
-  return "unset logscale x\nset xtics nomirror autofreq\n" + range("x", box.x_from, box.x_to) +
+  return std::string(chart.x_logarithmic ? "set" : "unset") + " logscale x\nset xtics nomirror " +
+         (chart.x_names.empty() ? "autofreq" : named_ticks(chart.x_names, box.is_lowest)) + "\n" +
+         range("x", box.x_from, box.x_to) +
          (box.is_lowest ? "set format x '%h'\n" + label : "set format x ''\nunset xlabel\n");
 }
 
@@ -323,7 +345,8 @@ std::string linear_ticks(double from, double to, double pixels) {
 
 /// Commands for the names left and the notes right of the rows of strips.
 std::string strip_axis(const ChartPanel& panel) {
-  std::string names, notes;
+  std::vector<std::string> names;
+  std::string notes;
   const auto note = [&](const std::string& text, const std::string& at) {
     notes += "set label " + gnuplot_quoted(text) + " noenhanced at graph 1," + at + "\n";
   };
@@ -331,16 +354,21 @@ std::string strip_axis(const ChartPanel& panel) {
   for (std::size_t r = 0; r < panel.strips.rows.size(); ++r) {
     const ChartStrips::Row& row = panel.strips.rows[r];
     note(row.note, "first " + std::to_string(r) + " left offset 0.8,0");
-    names += (r == 0 ? "" : ", ") + gnuplot_quoted(row.name) + " " + std::to_string(r);
+    names.push_back(row.name);
   }
-  return "set ytics nomirror (" + names +
-         ")\nset ytics scale 0 noenhanced\nset border 1\nunset grid\n" +
+  return "set ytics nomirror " + named_ticks(names) +
+         "\nset ytics scale 0 noenhanced\nset border 1\nunset grid\n" +
          range("y", panel.axis.low, panel.axis.high) + "unset label\nset label " +
          gnuplot_quoted(panel.label) + " noenhanced at graph 0,1 left offset 0,0.8\n" + notes;
 }
 
 std::string vertical_axis(const ChartPanel& panel, const PanelBox& box) {
   if (!panel.strips.rows.empty()) return strip_axis(panel);
+  if (has_names(panel)) {
+    return "unset logscale y\nset ytics nomirror " + named_ticks(panel.names) +
+           "\nset ytics scale 0 noenhanced\nunset ylabel\n" +
+           range("y", panel.axis.low, panel.axis.high);
+  }
   const ChartAxis& axis = panel.axis;
   const bool is_plain = !axis.logarithmic || (axis.low >= 0.01 && axis.high < 1e4);
   const double to = upper_end(panel);
@@ -382,6 +410,7 @@ std::vector<LegendEntry> legend_of(const Chart& chart) {
       if (curve.legend != panel.cell) add(curve_style(curve.style), curve.legend);
     }
     for (const ChartMarks& marks : panel.marks) {
+      if (has_names(panel)) continue;
       const bool is_named = panel.cell == marks.cell;
       if (chart.is_map || !is_named) add(mark_style(marks), chart.is_map ? marks.name : marks.cell);
     }

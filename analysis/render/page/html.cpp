@@ -94,6 +94,7 @@ Json json_of(const ChartPanel& panel, const std::vector<double>* x_above) {
   json["curves"] = array_of(panel.curves);
   if (!panel.marks.empty()) json["marks"] = array_of(panel.marks);
   if (!panel.strips.rows.empty()) json["strips"] = json_of(panel.strips);
+  add_if_any("names", panel.names, json);
   return json;
 }
 
@@ -149,6 +150,8 @@ std::string chart_json(const Chart& chart) {
   }
   if (chart.aspect > 0.0) json["aspect"] = rounded(chart.aspect);
   if (chart.is_map) json["is_map"] = true;
+  if (chart.x_logarithmic) json["x_logarithmic"] = true;
+  add_if_any("x_names", chart.x_names, json);
   Json& panels = json["panels"] = Json::array();
   const std::vector<double>* last = nullptr;
   for (const ChartPanel& panel : chart.panels) {

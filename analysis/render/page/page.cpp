@@ -144,8 +144,7 @@ std::string value_of(const TextPairs& pairs, std::string_view key) {
 }
 
 std::string study_lines(const StudyAnalysis& study, const TextPairs& provenance) {
-  return "# " + markdown_escape(study.title.empty() ? study.study_name : study.title) + "\n\n" +
-         "- study `" + study.study_name + "`, seed " + std::to_string(study.seed) + ": " +
+  return "\n- study `" + study.study_name + "`, seed " + std::to_string(study.seed) + ": " +
          std::to_string(study.runs_here) + " of " + std::to_string(study.study_runs) + " runs, " +
          study.scans_text() + "\n- run on " + value_of(provenance, "date") + " by montecarta " +
          value_of(provenance, "version") + ", commit " + value_of(provenance, "git") + "\n- on " +
@@ -232,14 +231,13 @@ std::string markdown_table(const TextTable& table) {
 
 std::string markdown_page(const StudyAnalysis& study, const std::vector<Section>& sections,
                           const TextPairs& provenance) {
-  std::string page = study_lines(study, provenance);
-  std::string figure = markdown_leading_figure(sections);
+  std::string page = "# " +
+                     markdown_escape(study.title.empty() ? study.study_name : study.title) + "\n" +
+                     markdown_leading_figure(sections);
   for (const Section& section : sections) {
-    const std::string tables = section.is_for_terminal ? markdown_section(section) : "";
-    page += tables;
-    if (!tables.empty()) page += std::exchange(figure, "");
+    if (section.is_for_terminal) page += markdown_section(section);
   }
-  return page + figure;
+  return page + study_lines(study, provenance);
 }
 
 std::string studied_sentence(const StudyAnalysis& study) {

@@ -46,6 +46,8 @@ TEST(Report, HoldsEverySectionAndNeedsNothingElse) {
     EXPECT_THAT(summary, HasSubstr(part));
   }
   EXPECT_THAT(summary, Not(HasSubstr("](figures/rmse.svg)")));
+  EXPECT_LT(summary.find("](figures/anees.svg)"), summary.find("\n|")) << "the figure comes first";
+  EXPECT_GT(summary.find("\n- study `"), summary.rfind("\n|")) << "the origin comes last";
 }
 
 /// The number of times that `part` is in `text`.

@@ -315,5 +315,28 @@ TEST(CellSums, AveragesTheInformationAboutTheUnobservable) {
   EXPECT_TRUE(reported_table(study, "observability").rows.empty());
 }
 
+TEST(CellSums, AveragesWhatEvolutionChangesWhereSomethingEvolved) {
+  RowSums sums({0.2, 0.4, 0.6});
+  RunRows rows;
+  rows.truth.assign(9, 0.0);
+  rows.spread.mean.assign(9, 0.0);
+  for (const double gain : {1.0, 3.0}) {
+    rows.evolution = {{0.0, 70.0, 90.0}, {0.0, 6.0, 8.0}, {0.0, gain, gain + 1.0}, {0.0, 0.5, 1.5}};
+    sums.add(rows);
+  }
+  const CellAnalysis cell = sums.result();
+  EXPECT_DOUBLE_EQ(cell.over_runs("evolution_evaluations").mean, 80.0);
+  EXPECT_DOUBLE_EQ(cell.over_runs("evolution_generations").mean, 7.0);
+  EXPECT_DOUBLE_EQ(cell.over_runs("evolution_gain").mean, 2.5);
+  EXPECT_DOUBLE_EQ(cell.over_runs("evolution_displacement").mean, 1.0);
+  EXPECT_EQ(cell.over_time("evolution_gain"), (std::vector{0.0, 2.0, 3.0}));
+  StudyAnalysis study;
+  study.times = {0.2, 0.4, 0.6};
+  study.cells = {cell};
+  EXPECT_EQ(reported_table(study, "evolution").rows.at(0).at(1), "80.0");
+  study.cells = {CellAnalysis()};
+  EXPECT_TRUE(reported_table(study, "evolution").rows.empty());
+}
+
 }  // namespace
 }  // namespace montecarta::analysis

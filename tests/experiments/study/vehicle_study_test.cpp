@@ -289,6 +289,17 @@ TEST(SensorStudy, ObservabilityIsOfFiltersThatTellItAndSensorsThatFixLandmarks) 
   EXPECT_EQ(refusal("fej_ekf_slam", "range_bearing"), "nothing");
 }
 
+TEST(Study, RecordsEvolutionOfFiltersThatEvolve) {
+  const auto refusal = [](const char* filter) {
+    const Study study = parsed(of_cell(filter), {"record.columns=pose, evolution"});
+    return complaint_of([&] { make_plan(study); });
+  };
+  EXPECT_THAT(refusal("ekf_slam"), HasSubstr("evolution (no cell's filter evolves"));
+  EXPECT_THAT(refusal("ampf_de map_solver=gauss_newton"), HasSubstr("evolution (no cell"));
+  EXPECT_EQ(refusal("de_srcd"), "nothing");
+  EXPECT_EQ(refusal("ampf_de"), "nothing");
+}
+
 TEST(SensorStudy, SomethingIsInReach) {
   EXPECT_THAT(
       engine::complaint_of([] {

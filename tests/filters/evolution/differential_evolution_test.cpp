@@ -64,13 +64,12 @@ Evolved<Real, 3> evolved(Candidates<Real>& population, const EvolutionSettings& 
 TEST(DifferentialEvolution, FindsTheTopOfAQuadraticAcrossTheBackwardDirection) {
   for (const EvolutionBase base : kBases) {
     auto population = scattered<double>(30, 0);
-    const auto [best, fitness] =
-        evolved(population, {.generations = 150, .base = base, .tolerance = 1e-12},
-                hill<double>(1.5, -1.7, -3.1));
-    EXPECT_NEAR(best[0], 1.5, 1e-4);
-    EXPECT_NEAR(best[1], -1.7, 1e-4);
-    EXPECT_NEAR(wrap(best[2] + 3.1), 0.0, 1e-4);
-    EXPECT_NEAR(fitness, 0.0, 1e-7);
+    const auto found = evolved(population, {.generations = 150, .base = base, .tolerance = 1e-12},
+                               hill<double>(1.5, -1.7, -3.1));
+    EXPECT_NEAR(found.best[0], 1.5, 1e-4);
+    EXPECT_NEAR(found.best[1], -1.7, 1e-4);
+    EXPECT_NEAR(wrap(found.best[2] + 3.1), 0.0, 1e-4);
+    EXPECT_NEAR(found.fitness, 0.0, 1e-7);
   }
 }
 
@@ -158,6 +157,9 @@ TEST(DifferentialEvolution, EveryLaneEvolvesAsItWouldAlone) {
         auto alone = scattered<double>(size, 16 + lane);
         const auto own = evolved(alone, settings, hill<double>(1.5, -1.7, -3.1), 16 + lane);
         EXPECT_NEAR(get(best.fitness, lane), own.fitness, 1e-12);
+        EXPECT_EQ(get(best.generations, lane), own.generations);
+        EXPECT_NEAR(get(best.gain_of_best, lane), own.gain_of_best, 1e-12);
+        EXPECT_NEAR(get(best.mean_gain, lane), own.mean_gain, 1e-12);
         for (std::size_t i = 0; i < size; ++i) {
           for (std::size_t j = 0; j < 3; ++j)
             EXPECT_NEAR(get(together[i][j], lane), alone[i][j], 1e-12) << lane << ' ' << i;
@@ -203,6 +205,19 @@ std::size_t evaluations(const EvolutionSettings& settings) {
     return top(member, c);
   });
   return count;
+}
+
+TEST(DifferentialEvolution, SaysWhatItChanged) {
+  const auto top = hill<double>(1.5, -1.7, -3.1);
+  const auto before = scattered<double>(10, 0);
+  auto after = before;
+  const auto found = evolved(after, {.generations = 400, .tolerance = 1e-4}, top);
+  double gain = 0.0;
+  for (std::size_t i = 0; i < before.size(); ++i) gain += top(i, after[i]) - top(i, before[i]);
+  EXPECT_DOUBLE_EQ(found.mean_gain, gain / 10.0);
+  EXPECT_DOUBLE_EQ(found.gain_of_best, found.fitness - top(0, before[0]));
+  EXPECT_EQ(10U * static_cast<std::size_t>(1.0 + found.generations),
+            evaluations({.generations = 400, .tolerance = 1e-4}));
 }
 
 TEST(DifferentialEvolution, StopsWhereAllMembersAreEquallyGood) {

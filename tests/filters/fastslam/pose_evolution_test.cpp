@@ -86,7 +86,8 @@ std::array<Lanes, 3> most_probable(std::size_t particles) {
     set(predicted.mean.y, lane, 0.05 * static_cast<double>(lane));
   OwnEvolution<Lanes> own(particles, 10);
   return own.most_probable(Matches(), 0, predicted, predicted, {.first = 0.01, .second = 0.001},
-                           3.0, EvolutionSettings(), {7, 0, 3, 0, Draw::evolution});
+                           3.0, EvolutionSettings(), {7, 0, 3, 0, Draw::evolution})
+      .offset;
 }
 
 // Packed with few others or evolving with many: a particle finds the same, to the last bit.

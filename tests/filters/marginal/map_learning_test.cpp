@@ -40,8 +40,13 @@ struct Cloud {
     weights.normalise(kContext);
   }
   SharedLandmark learnt(const MapSettings& settings, SharedLandmark landmark) const {
+    EvolutionReport report;
+    return learnt(settings, landmark, report);
+  }
+  SharedLandmark learnt(const MapSettings& settings, SharedLandmark landmark,
+                        EvolutionReport& report) const {
     MapLearning<Real> learning(settings, kNoise);
-    learning.learn(kContext, 4, 0.3, poses, weights, seen, landmark);
+    learning.learn(kContext, 4, 0.3, poses, weights, seen, landmark, report);
     return landmark;
   }
 };
@@ -64,6 +69,26 @@ TEST(MapLearning, GaussNewtonAndEvolutionFindTheSamePlace) {
       EXPECT_NEAR(newton.information.xx, evolved.information.xx, 1e-2);
     }
   }
+}
+
+// EQUATIONS (9.3), computed again from (14.2) for one exact pose.
+TEST(MapLearning, ReportsGainAndDisplacementOfItsEvolution) {
+  const Cloud<double> cloud(0.0, 1);
+  EvolutionReport report;
+  const SharedLandmark after = cloud.learnt({.solver = MapSolver::de}, kBefore, report);
+  const auto cost = [&](const Point& place) {
+    const auto predicted = predicted_observation(Pose{}, place);
+    const double r = cloud.seen.range - predicted.range;
+    const double b = cloud.seen.bearing - predicted.bearing;
+    const double x = place.x - kBefore.mean.x, y = place.y - kBefore.mean.y;
+    const auto& L = kBefore.information;
+    return std::pair(r * r / kNoise.first + b * b / kNoise.second,
+                     L.xx * x * x + 2.0 * L.xy * x * y + L.yy * y * y);
+  };
+  const auto [fit, squared_way] = cost(after.mean);
+  EXPECT_NEAR(report.values()[2], 0.5 * (cost(kBefore.mean).first - fit - squared_way), 1e-9);
+  EXPECT_NEAR(report.values()[3], std::sqrt(squared_way), 1e-12);
+  EXPECT_GT(report.values()[3], 0.1);
 }
 
 // From one exact pose the recursive map is the information filter: it averages.

@@ -7,7 +7,7 @@ class ChartFigure {
   constructor(figure, data) {
     this.data = data;
     data.panels.reduce((above, panel) => (panel.x ??= above), null);
-    this.whole = {logarithmic: false, from: data.x_from, to: data.x_to};
+    this.whole = {logarithmic: data.x_logarithmic ?? false, from: data.x_from, to: data.x_to};
     this.horizontal = {...this.whole, from: data.x_first ?? data.x_from};
     const live = htmlElement("div", {class: "live"});
     figure.prepend(live);
@@ -20,7 +20,8 @@ class ChartFigure {
       "aria-label": figure.querySelector("svg.drawing")?.getAttribute("aria-label") ?? "chart"},
     this.stage);
     this.plots = data.panels.map((panel) => panel.strips
-      ? new Strips(panel, this.svg, data.x_to) : new Plot(panel, this.svg));
+      ? new Strips(panel, this.svg, data.x_to)
+      : panel.names ? new NamedRows(panel, this.svg) : new Plot(panel, this.svg, data.x_names));
     this.x_name = svgElement("text", {class: "x name", text: data.x_label}, this.svg);
     this.cursor = svgElement("path", {class: "cursor"}, this.svg);
     this.drawn_box = svgElement("rect", {class: "selection"}, this.svg);
@@ -164,7 +165,7 @@ class ChartFigure {
     }
     const order = (s, t) => [Math.min(s, t), Math.max(s, t)];
     const flat = Math.abs(to.y - from.y) < 24, narrow = Math.abs(to.x - from.x) < 24;
-    if (!flat && !plot.panel.strips) {
+    if (!flat && !plot.panel.strips && !plot.panel.names) {
       plot.zoomed = stretch(plot.vertical, ...order(clamp(a.y, 0, 1), clamp(b.y, 0, 1)));
     }
     this.show(narrow && !flat ? this.horizontal : stretch(this.horizontal, ...order(a.x, b.x)));
@@ -179,7 +180,8 @@ class ChartFigure {
 /** The first curve or mark of each cell, over all panels: a sample for its button. */
 function cellsOf(data) {
   const cells = new Map();
-  for (const {curves, marks = []} of data.panels) {
+  for (const {names, curves, marks = []} of data.panels) {
+    if (names) continue;  // the axis has them
     for (const one of [...curves, ...marks]) {
       if (one.legend && !cells.has(one.legend)) cells.set(one.legend, one);
     }

@@ -30,9 +30,13 @@ function firstFrom(values, x) {
 }
 
 class Plot {
-  /** @param panel of the chart's data. @param parent SVG element to draw into. */
-  constructor(panel, parent) {
+  /**
+   * @param panel of the chart's data. @param parent SVG element to draw into.
+   * @param x_names of the places 0, 1, ... of the horizontal axis, in place of numbers.
+   */
+  constructor(panel, parent, x_names = null) {
     this.panel = panel;
+    this.x_names = x_names;
     this.group = svgElement("g", {class: "panel"}, parent);
     this.zoomed = null;  // the vertical axis, where it does not show everything
   }
@@ -112,14 +116,23 @@ class Plot {
     svgElement("path", {class: "frame", d: `M${left} ${top}v${height}h${width}`}, this.group);
   }
 
+  /** The values of the ticks of the horizontal axis, with their texts. */
+  timesOf() {
+    const {from, to} = this.horizontal;
+    const isShown = ([value]) => value >= from && value <= to;
+    return this.x_names ? this.x_names.map((name, k) => [k, name]).filter(isShown)
+      : ticksOf(this.horizontal, Math.max(2, this.box.width / 90))
+        .map((tick) => [tick, readable(tick)]);
+  }
+
   /** Ticks of the horizontal axis. */
   drawTimes() {
-    const {left, top, width, height} = this.box;
-    for (const tick of ticksOf(this.horizontal, Math.max(2, width / 90))) {
-      svgElement("path", {class: "grid", d: `M${this.x(tick)} ${top}v${height}`}, this.group);
+    const {top, height} = this.box;
+    for (const [value, text] of this.timesOf()) {
+      svgElement("path", {class: "grid", d: `M${this.x(value)} ${top}v${height}`}, this.group);
       if (!this.box.lowest) continue;
-      svgElement("text", {class: "x tick", x: this.x(tick), y: top + height + 17,
-        text: readable(tick)}, this.group);
+      svgElement("text", {class: "x tick", x: this.x(value), y: top + height + 17, text},
+                 this.group);
     }
   }
 

@@ -3,6 +3,11 @@
 
 const STRIP = {thickness: 18, gap: 6, name: 17, character: 6.8, most: 0.35};
 
+/** [px] */
+function widthOfLongest(texts) {
+  return Math.max(...texts.map(({length}) => length)) * STRIP.character;
+}
+
 class Strips extends Plot {
   /** @param end where the last column ends. */
   constructor(panel, parent, end) {
@@ -13,7 +18,7 @@ class Strips extends Plot {
   /** Names stand above their strips where they would take too much of the width. */
   margins(width) {
     const {rows} = this.panel.strips;
-    const longest = (what) => Math.max(...rows.map((row) => row[what].length)) * STRIP.character;
+    const longest = (what) => widthOfLongest(rows.map((row) => row[what]));
     this.is_stacked = width < CHART.narrow || longest("name") > STRIP.most * width;
     return this.is_stacked ? {left: 4, right: CHART.right}
       : {left: longest("name") + 12, right: longest("note") + 14};

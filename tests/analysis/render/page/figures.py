@@ -203,3 +203,72 @@ class StripsOnAPhone(Strips):
 
     screen = {"width": 390, "height": 740}
     names_stand_above = True
+
+
+class BoxesAndSweeps(OnPage):
+
+    study = "strips"  # it varies two options
+    names_stand_above = False
+    sweep = "sweep_motion_noise"
+
+    def texts(self, figure, kind):
+        return self.page.evaluate(f"[...document.querySelectorAll('#figure_{figure} svg.chart "
+                                  f"{kind}')].map(e => e.textContent)")
+
+    def test_name_the_rows_inside_the_chart(self):
+        chart = self.chart("position_boxes")
+        self.assertEqual(self.texts("position_boxes", "text.row"), chart["panels"][0]["names"])
+        self.assertEqual(len(chart["panels"][0]["names"]), 9)
+        inside, above = self.page.evaluate("""(() => {
+            const chart = document.querySelector("#figure_position_boxes svg.chart");
+            const {left, right} = chart.getBoundingClientRect();
+            const names = [...chart.querySelectorAll("text.row")]
+                .map(one => one.getBoundingClientRect());
+            const box = chart.querySelector("g.marks").getBoundingClientRect();
+            return [names.every(name => name.left >= left - 1 && name.right <= right + 1),
+                    names[0].bottom <= box.top + 4];
+        })()""")
+        self.assertTrue(inside)
+        self.assertEqual(above, self.names_stand_above)
+
+    def test_say_the_quantiles(self):
+        marks = self.chart("position_boxes")["panels"][0]["marks"]
+        self.page.middle("#figure_position_boxes svg.chart")
+        place = self.page.evaluate("""(() => {
+            const median = document.querySelectorAll("#figure_position_boxes g.marks")[1];
+            const box = median.getBoundingClientRect();
+            return [(box.left + box.right) / 2, (box.top + box.bottom) / 2];
+        })()""")
+        self.page.hover(place)
+        title, facts = self.said("position_boxes")
+        self.assertEqual(title, marks[0]["legend"])
+        self.assertEqual(list(facts), ["5 %", "25 %", "median", "75 %", "95 %"])
+        self.assertAlmostEqual(float(facts["median"].removesuffix(" m")), marks[1]["x"][0],
+                               delta=1e-3)
+
+    def test_show_every_value_of_the_option(self):
+        chart = self.chart(self.sweep)
+        self.assertEqual(chart["x_names"], ["1", "2", "4"])
+        self.assertEqual(set(self.texts(self.sweep, "text.x.tick")), {"1", "2", "4"})
+        self.assertEqual(self.count(f"#figure_{self.sweep} .legend button"), 3)
+
+    def test_say_a_value_with_its_interval(self):
+        self.page.middle(f"#figure_{self.sweep} svg.chart")
+        place = self.page.evaluate(f"""(() => {{
+            const chart = document.querySelector("#figure_{self.sweep} svg.chart");
+            const {{left, top}} = chart.getBoundingClientRect();
+            const first = chart.querySelector("path.dots").getAttribute("d");
+            const [, x, y] = /^M([0-9.]+) ([0-9.]+)/.exec(first).map(Number);
+            return [left + x, top + y];
+        }})()""")
+        self.page.hover(place)
+        points = self.chart(self.sweep)["panels"][0]["marks"][2]
+        title, facts = self.said(self.sweep)
+        self.assertEqual(title, points["legend"])
+        self.assertAlmostEqual(float(facts["lower end"]), points["facts"][1]["values"][0],
+                               delta=1e-3)
+
+
+class BoxesAndSweepsOnAPhone(BoxesAndSweeps):
+
+    screen = {"width": 390, "height": 740}

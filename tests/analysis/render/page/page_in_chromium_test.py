@@ -14,6 +14,7 @@ import unittest
 import chromium
 from figures import Hover, Legend, Touch, Zoom  # noqa: F401: found by unittest
 from figures import Strips, StripsOnAPhone  # noqa: F401
+from figures import BoxesAndSweeps, BoxesAndSweepsOnAPhone  # noqa: F401
 from folding import Cards, Folding  # noqa: F401
 from marks import Maps, Tree  # noqa: F401
 from on_page import FIRST_STUDY, STRIPS, STUDY, OnPage, make_report  # noqa: F401
