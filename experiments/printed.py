@@ -17,8 +17,8 @@ The .printed file beside a study has one statement per line:
     assume = Loops: the paper does not say; two.
 
 A note that begins with "not in the paper" marks a comparison of our own. --lead FILE writes three
-sentences to FILE: what the paper says, what was found, and how sure that is. Cells are named by their
-labels. A metric is a column of runs.csv, or share_inside_BLOCK, share_above_BLOCK or
+sentences to FILE: what the paper says, what was found, and how sure that is. Cells are named by
+their labels. A metric is a column of runs.csv, or share_inside_BLOCK, share_above_BLOCK or
 stays_above_from_BLOCK (pose, position, heading), which compare the average NEES of all runs with a
 band: that of the paper, or else the chi-square band for the number of runs. These metrics depend on
 the number of runs, so they are computed for every BATCH, a folder that `analyze --csv` wrote for a
@@ -449,8 +449,8 @@ def how_sure(printed, measured, values):
     ours = f"{runs[0]}" if runs[0] == runs[-1] else f"{runs[0]} to {runs[-1]}"
     paper = (f"the paper has {printed['runs']}" if printed["runs"] else
              "the paper does not say of how many its numbers are")
-    sentence = (f"How sure: each cell has {ours} complete runs ({paper}), cells are compared run by "
-                f"run, and intervals are at {LEVEL * 100:.0f} %")
+    sentence = (f"How sure: each cell has {ours} complete runs ({paper}), cells are compared run "
+                f"by run, and intervals are at {LEVEL * 100:.0f} %")
     for value, (mean, _, verdict) in values:
         if value["cell"] == printed["baseline"] and verdict.startswith("not reproduced"):
             return (sentence + f"; but the {value['metric'].replace('_', ' ')} of {value['cell']} "

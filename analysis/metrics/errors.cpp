@@ -92,24 +92,24 @@ Figure rmse_figure(const StudyAnalysis& study) {
   return figure;
 }
 
-/// Boxes of a score of the runs, times `factor`.
-Figure error_boxes(const StudyAnalysis& study, const char* name, const char* score,
-                   const char* label, double factor) {
+/// The figure with boxes of a score of the runs, times `factor`.
+Figure error_boxes(const StudyAnalysis& study, Figure figure, const char* score, const char* label,
+                   double factor) {
   std::vector<BoxRow> rows;
   for (std::size_t i = 0; i < study.cells.size(); ++i) {
     const CellAnalysis& cell = study.cells[i];
     rows.push_back({cell.label, i, scaled(cell.scores.column(score), factor)});
   }
-  Figure figure = figure_of(name);
   add_boxes(rows, label, figure);
   return figure;
 }
 
 std::vector<Figure> errors_figures(const StudyAnalysis& study) {
   return {rmse_figure(study),
-          error_boxes(study, "position_boxes", "position_rmse", "position RMSE of a run [m]", 1.0),
-          error_boxes(study, "heading_boxes", "heading_rmse", "heading RMSE of a run [deg]",
-                      180.0 / kPi)};
+          error_boxes(study, figure_of("position_boxes"), "position_rmse",
+                      "position RMSE of a run [m]", 1.0),
+          error_boxes(study, figure_of("heading_boxes"), "heading_rmse",
+                      "heading RMSE of a run [deg]", 180.0 / kPi)};
 }
 
 }  // namespace

@@ -95,18 +95,27 @@ ChartAxis sweep_axis(const SweepNumber& number, const Sweep& sweep) {
   return {false, std::min(0.0, kRoom * least), high};
 }
 
-/// The marks of one curve: a line through its values, points with facts, and their intervals.
+/// Adds an interval at x = `at` to a line: a bar with a cap at each end.
+void add_interval(const Interval& interval, double at, ChartMarks& bars) {
+  constexpr double kCap = 0.04;  // half the width of a cap, of the distance of values
+  const auto add = [&](double from_x, double from_y, double to_x, double to_y) {
+    bars.x.insert(bars.x.end(), {from_x, to_x, kNaN});
+    bars.y.insert(bars.y.end(), {from_y, to_y, kNaN});
+  };
+  if (!std::isfinite(interval.lower) || !std::isfinite(interval.upper)) return;
+  add(at, interval.lower, at, interval.upper);
+  for (const double end : {interval.lower, interval.upper}) add(at - kCap, end, at + kCap, end);
+}
+
+/// The marks of one curve: a line through its values, their intervals, and points with facts.
 void add_curve(const Sweep& sweep, std::size_t style, const SweepNumber& number,
                std::vector<ChartMarks>& all) {
-  constexpr double kCap =
-      0.04;  // half the width of the ends of intervals, of the distance of values
-  constexpr double kPoint = 6.0;
+  constexpr double kPoint = 6.0;  // [px]
   const SweepCurve& curve = sweep.curves[style];
-  ChartMarks line, points, bars;
-  for (ChartMarks* marks : {&line, &points, &bars}) {
-    marks->cell = curve.name;
-    marks->style = style;
-  }
+  ChartMarks line;
+  line.cell = curve.name;
+  line.style = style;
+  ChartMarks bars = line, points = line;
   points.shape = ChartMarks::Shape::points;
   points.thickness = kPoint;
   points.facts = {{number.heading, {}}, {"lower end", {}}, {"upper end", {}}};
@@ -121,19 +130,7 @@ void add_curve(const Sweep& sweep, std::size_t style, const SweepNumber& number,
     points.facts[0].values.push_back(value);
     points.facts[1].values.push_back(interval.lower);
     points.facts[2].values.push_back(interval.upper);
-    if (!std::isfinite(interval.lower) || !std::isfinite(interval.upper)) continue;
-    for (const auto& [x, y] : std::vector<std::pair<double, double>>{{at, interval.lower},
-                                                                     {at, interval.upper},
-                                                                     {kNaN, kNaN},
-                                                                     {at - kCap, interval.lower},
-                                                                     {at + kCap, interval.lower},
-                                                                     {kNaN, kNaN},
-                                                                     {at - kCap, interval.upper},
-                                                                     {at + kCap, interval.upper},
-                                                                     {kNaN, kNaN}}) {
-      bars.x.push_back(x);
-      bars.y.push_back(y);
-    }
+    add_interval(interval, at, bars);
   }
   for (ChartMarks* marks : {&line, &bars, &points}) all.push_back(std::move(*marks));
 }

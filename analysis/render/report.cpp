@@ -58,17 +58,13 @@ std::vector<Section> arranged(std::vector<Section> sections, std::vector<Figure>
   for (SectionPlace& place : places) {
     Section section = take(place.section, sections).value_or(Section{place.section, ""});
     if (section.shown == Section::Shown::folded) section.shown = place.shown;
+    for (const Figure& figure : figures) {
+      if (!place.prefix.empty() && figure.name.starts_with(place.prefix))
+        place.figures.push_back(figure.name);
+    }
     place.figures.push_back(place.section);
     for (const std::string& name : place.figures) {
       if (auto figure = take(name, figures)) section.figures.push_back(std::move(*figure));
-    }
-    for (std::size_t f = 0; f < figures.size() && !place.prefix.empty();) {
-      if (!figures[f].name.starts_with(place.prefix)) {
-        ++f;
-        continue;
-      }
-      section.figures.push_back(std::move(figures[f]));
-      figures.erase(figures.begin() + static_cast<std::ptrdiff_t>(f));
     }
     page.push_back(titled(std::move(section)));
   }

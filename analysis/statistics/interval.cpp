@@ -27,8 +27,8 @@ std::string with_interval(double mean, const Interval& interval) {
   const bool is_small = std::max(std::abs(interval.lower), std::abs(interval.upper)) < kSmall;
   const auto each = [&](double value) {
     if (std::abs(mean) >= 1e4) return compact(value);
-    if (is_small) return readable(value, 3);
-    return decimals > 12 ? readable(value, 2) : with_error_to(decimals, value, std::nan(""));
+    if (is_small || decimals > 12) return readable(value, 2);
+    return with_error_to(decimals, value, std::nan(""));
   };
   return each(mean) + " [" + each(interval.lower) + ", " + each(interval.upper) + "]";
 }

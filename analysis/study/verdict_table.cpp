@@ -116,13 +116,13 @@ Frame::Row numbers_of(const CellAnalysis& cell, const NeesResult& nees, double l
   return row;
 }
 
-std::string ratio_text(const Verdict& verdict) {
+std::string ratio_text_of(const Verdict& verdict) {
   if (verdict.beside.repeated_runs > 0) return "-";
   return with_interval(verdict.ratio_estimate(), verdict.ratio());
 }
 
 std::string ratio_text(const CellAnalysis& cell) {
-  return tested_pose(cell) == nullptr ? "-" : ratio_text(cell.verdict);
+  return tested_pose(cell) == nullptr ? "-" : ratio_text_of(cell.verdict);
 }
 
 std::string MeanText::text() const {
@@ -323,7 +323,7 @@ TextTable summary_table(const StudyAnalysis& study) {
       table.add({{"cell", "  " + block.name, Align::left},
                  {"complete", complete_runs_text(cell)},
                  entry_of(block.verdict),
-                 {ratio, ratio_text(block.verdict)},
+                 {ratio, ratio_text_of(block.verdict)},
                  {"RMSE [m]", "-"},
                  {"RMSE [deg]", "-"},
                  {"ancestors", "-"},

@@ -75,7 +75,7 @@ Tone tone_of_runs(const CellAnalysis& cell);
 
 /// The NEES ratio with its interval; "-" if it is not tested.
 std::string ratio_text(const CellAnalysis& cell);
-std::string ratio_text(const Verdict& verdict);
+std::string ratio_text_of(const Verdict& verdict);
 
 /// The mean of a score over the complete runs of a cell, in words.
 struct MeanText {

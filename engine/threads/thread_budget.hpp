@@ -24,8 +24,8 @@ CpuLimits cpu_limits();
 double cgroup_quota(const std::filesystem::path& root);
 
 /// The number of threads that a program may use: the first one that is set of `threads_option` (the
-/// text after --threads), MONTECARTA_THREADS, SLURM_CPUS_PER_TASK and OMP_NUM_THREADS, else the
-/// tightest CPU limit. Throws StudyError if it is not a whole number from 1 to 4096. An empty
+/// text after --threads), MONTECARTA_THREADS, SLURM_CPUS_PER_TASK and OMP_NUM_THREADS, and at most
+/// the tightest CPU limit. Throws StudyError if it is not a whole number from 1 to 4096. An empty
 /// variable counts as not set.
 int thread_budget(const std::optional<std::string>& threads_option,
                   const CpuLimits& limits = cpu_limits());

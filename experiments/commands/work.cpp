@@ -137,13 +137,13 @@ void merge_shards(const Worker& worker) {
              worker.folder.result().string());
 }
 
-/// Claims one of the missing files; nullptr if living workers make them, or nobody may.
-std::unique_ptr<WorkClaim> claim_one(const Worker& worker, const std::vector<fs::path>& missing) {
+/// Claims one of the missing files, or finds why there is none to claim.
+ClaimSearch claim_one(const Worker& worker, const std::vector<fs::path>& missing) {
   const double patience = worker.patience();
-  if (auto claim = claim_free(missing, patience)) return claim;
+  if (auto claim = claim_free(missing, patience)) return {std::move(claim), {}};
   worker.say("no shard is free; looking for at most " + duration_text(patience) +
              " whether the workers of the others are alive");
-  return claim_lost(missing, patience);
+  return watch_others(missing, patience);
 }
 
 /// Makes a file that is claimed, and removes the claims on it. Returns as compute() does.
@@ -167,23 +167,15 @@ int make_claimed(const Worker& worker, std::unique_ptr<WorkClaim> claim) {
   return code;
 }
 
-/// Says why this worker has nothing to do. Throws RunError if files are left that nobody makes.
-void explain_idleness(const Worker& worker, const std::vector<fs::path>& missing) {
-  std::string given_up;
-  for (const fs::path& file : missing) {
-    const ClaimState state = claims_on(file);
-    if (state.losses + (state.is_free() ? 0 : 1) < kMostLosses) continue;
-    given_up += "\n  " + file.string() + ".claim.*: " + std::string(trimmed(state.text));
-  }
-  if (!given_up.empty()) {
-    throw RunError(worker.folder.result().parent_path().string() + ": " +
-                   std::to_string(kMostLosses) +
-                   " workers were lost or failed over one file (it would end all workers one by "
-                   "one): remove the cause and these files, then start work again:" +
-                   given_up);
-  }
-  worker.say("nothing to do: other workers are at " + std::to_string(missing.size()) +
-             " files; the last one merges. If they are ended, the same command continues");
+/// Throws RunError that names the files that nobody may begin again.
+[[noreturn]] void refuse_to_begin(const std::vector<fs::path>& given_up) {
+  std::string files;
+  for (const fs::path& file : given_up)
+    files += "\n  " + file.string() + ".claim.*: " + std::string(trimmed(claims_on(file).text));
+  throw RunError("work: " + std::to_string(kMostLosses) +
+                 " workers were lost or failed over one file (it would end all workers one by "
+                 "one): remove the cause and these files, then start work again:" +
+                 files);
 }
 
 /// Whether all shards were finished since `before` was found missing, or the result is there.
@@ -203,12 +195,15 @@ int work_command(const Arguments& arguments) {
   bool has_merged = false;
   for (auto missing = worker.folder.missing(); !missing.empty();
        missing = worker.folder.missing()) {
-    if (auto claim = claim_one(worker, missing)) {
-      has_merged = claim->file() == result;
-      const int code = make_claimed(worker, std::move(claim));
+    ClaimSearch found = claim_one(worker, missing);
+    if (found.claim) {
+      has_merged = found.claim->file() == result;
+      const int code = make_claimed(worker, std::move(found.claim));
       if (code != kDone) return code;
     } else if (!is_further(worker.folder, missing)) {
-      explain_idleness(worker, missing);
+      if (!found.given_up.empty()) refuse_to_begin(found.given_up);
+      worker.say("nothing to do: other workers are at " + std::to_string(missing.size()) +
+                 " files; the last one merges. If they are ended, the same command continues");
       return kDone;
     }
   }

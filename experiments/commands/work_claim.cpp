@@ -15,6 +15,7 @@
 #include <functional>
 #include <iterator>
 #include <unistd.h>
+#include <utility>
 
 namespace montecarta::experiments {
 namespace {
@@ -174,16 +175,21 @@ std::unique_ptr<WorkClaim> claim_free(const std::vector<fs::path>& files, double
   return nullptr;
 }
 
-std::unique_ptr<WorkClaim> claim_lost(const std::vector<fs::path>& files, double patience) {
+ClaimSearch watch_others(const std::vector<fs::path>& files, double patience) {
   std::vector<Watched> others;
   for (const fs::path& file : files) others.push_back({file, claims_on(file)});
   const Stopwatch stopwatch;
   const auto pause = std::chrono::duration<double>(std::clamp(patience / 50.0, 0.01, 1.0));
   for (bool is_end = false;; is_end = stopwatch.seconds() >= patience) {
-    if (auto claim = look(others, is_end, patience)) return claim;
-    if (is_end || std::ranges::all_of(others, &Watched::is_alive)) return nullptr;
+    if (auto claim = look(others, is_end, patience)) return {std::move(claim), {}};
+    if (is_end || std::ranges::all_of(others, &Watched::is_alive)) break;
     std::this_thread::sleep_for(pause);
   }
+  ClaimSearch found;
+  for (const Watched& watched : others) {
+    if (!watched.is_alive) found.given_up.push_back(watched.file);
+  }
+  return found;
 }
 
 }  // namespace montecarta::experiments

@@ -70,10 +70,15 @@ class WorkClaim {
 /// is none.
 std::unique_ptr<WorkClaim> claim_free(const std::vector<std::filesystem::path>& files,
                                       double patience);
+
+/// What a worker finds that watches others.
+struct ClaimSearch {
+  std::unique_ptr<WorkClaim> claim;  ///< claim on a file whose worker is lost; nullptr: on none
+  std::vector<std::filesystem::path> given_up;  ///< files that nobody makes and nobody may begin
+};
+
 /// Watches the claims of other workers for at most `patience` seconds, and claims the file of one
-/// that shows no sign of life. nullptr if all are alive, or have finished, or no other worker may
-/// begin their files.
-std::unique_ptr<WorkClaim> claim_lost(const std::vector<std::filesystem::path>& files,
-                                      double patience);
+/// that shows no sign of life.
+ClaimSearch watch_others(const std::vector<std::filesystem::path>& files, double patience);
 
 }  // namespace montecarta::experiments

@@ -4,7 +4,8 @@
 usage: slurm_test.py MONTECARTA      (exit code 77, with the reason, where there can be no Slurm)
 
 A few scenarios run at the same time, each on nodes of its own; each test waits for its scenario, as
-long as anything changes: no test depends on the speed of the machine. All end the same way: submit again, and the file equals that of a single machine, byte for byte.
+long as anything changes: no test depends on the speed of the machine. All end the same way: submit
+again, and the file equals that of a single machine, byte for byte.
 """
 import os
 import re

@@ -231,9 +231,8 @@ std::string markdown_table(const TextTable& table) {
 
 std::string markdown_page(const StudyAnalysis& study, const std::vector<Section>& sections,
                           const TextPairs& provenance) {
-  std::string page = "# " +
-                     markdown_escape(study.title.empty() ? study.study_name : study.title) + "\n" +
-                     markdown_leading_figure(sections);
+  std::string page = "# " + markdown_escape(study.title.empty() ? study.study_name : study.title) +
+                     "\n" + markdown_leading_figure(sections);
   for (const Section& section : sections) {
     if (section.is_for_terminal) page += markdown_section(section);
   }

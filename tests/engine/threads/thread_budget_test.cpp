@@ -64,6 +64,12 @@ TEST_F(ThreadBudget, TakesTheFirstThatIsSetWithinTheQuota) {
   EXPECT_EQ(budget({}, std::nullopt, 16.0), 6);
 }
 
+TEST_F(ThreadBudget, IsNeverMoreThanThereAreProcessors) {
+  EXPECT_EQ(budget({}, "64"), 6);
+  EXPECT_EQ(budget({{"SLURM_CPUS_PER_TASK", "64"}}), 6);
+  EXPECT_EQ(budget({}, "6", 1.5), 2);
+}
+
 TEST_F(ThreadBudget, NamesTheVariableAndTheRemedy) {
   for (const char* bad : {"0", "-2", "two", "2x", "1e9", "99999999999999999999", " 2"})
     EXPECT_THAT(

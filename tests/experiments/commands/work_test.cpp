@@ -103,11 +103,13 @@ TEST_F(SharedFolder, LosesNothingToKill9) {
 
 TEST_F(SharedFolder, LeavesAShardToALivingWorker) {
   lay_out();
-  const std::filesystem::path claim = folder_ / "f/shards/shard_0001.h5.claim.1";
-  std::filesystem::remove(claim);
+  for (const char* number : {"1", "2", "3", "4"})  // the last worker that may be lost over it
+    write("f/shards/shard_0001.h5.claim." + std::string(number), "failed on ghost 17: its reason");
+  const std::filesystem::path claim = folder_ / "f/shards/shard_0001.h5.claim.5";
+  std::ofstream file(claim);
+  file << "at work: other 17 0" << std::flush;
   std::atomic<bool> is_over = false;
   std::thread other([&] {
-    std::ofstream file(claim);
     for (int sign = 1000; !is_over; ++sign) {
       file.seekp(0);
       file << "at work: other 17 " << sign << std::flush;

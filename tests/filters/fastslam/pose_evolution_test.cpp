@@ -85,8 +85,9 @@ std::array<Lanes, 3> most_probable(std::size_t particles) {
   for (std::size_t lane = 0; lane < Lanes::kSize; ++lane)
     set(predicted.mean.y, lane, 0.05 * static_cast<double>(lane));
   OwnEvolution<Lanes> own(particles, 10);
-  return own.most_probable(Matches(), 0, predicted, predicted, {.first = 0.01, .second = 0.001},
-                           3.0, EvolutionSettings(), {7, 0, 3, 0, Draw::evolution})
+  return own
+      .most_probable(Matches(), 0, predicted, predicted, {.first = 0.01, .second = 0.001}, 3.0,
+                     EvolutionSettings(), {7, 0, 3, 0, Draw::evolution})
       .offset;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Rows of marks, such as boxes, with a name for each row in place of a vertical axis.
 
-const ROW = {pitch: 26, stacked: 42};
+const ROW = {pitch: 26, stacked: 48};
 
 class NamedRows extends Plot {
   /** Names tell rows apart, so no line is dashed. */
@@ -27,7 +27,7 @@ class NamedRows extends Plot {
     this.drawTimes();
     svgElement("path", {class: "frame", d: `M${left} ${top}v${height}h${width}`}, this.group);
     this.panel.names.forEach((name, r) => svgElement("text", this.is_stacked
-      ? {class: "row", x: left + 4, y: this.y(r - 0.34), text: name}
+      ? {class: "row", x: left + 4, y: this.y(r - 0.3) - 4, text: name}
       : {class: "row end", x: left - 6, y: this.y(r) + 4, text: name}, this.group));
   }
 }

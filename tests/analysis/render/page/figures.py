@@ -272,3 +272,4 @@ class BoxesAndSweeps(OnPage):
 class BoxesAndSweepsOnAPhone(BoxesAndSweeps):
 
     screen = {"width": 390, "height": 740}
+    names_stand_above = True
