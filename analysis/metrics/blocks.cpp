@@ -18,8 +18,10 @@ namespace {
 
 class BlocksOverRuns final : public MergedSums<BlocksOverRuns> {
  public:
-  explicit BlocksOverRuns(const RunCriteria& criteria)
-      : criteria_(&criteria), blocks_(blocks_of(criteria.components, criteria.units)) {}
+  explicit BlocksOverRuns(const RunCriteria& criteria) : criteria_(&criteria) {
+    const bool is_state = criteria.innovation_components == 0;
+    if (is_state) blocks_ = blocks_of(criteria.components, criteria.units);
+  }
   void add(const MeasuredRun& run) override {
     if (blocks_.empty() || run.rows.error.value.empty()) return;
     if (!sums_) sums_.emplace(blocks_, criteria_->times.size());

@@ -74,6 +74,25 @@ TEST_F(JudgeInnovations, BehindAGateArePutOnTheScaleWithoutOne) {
 }
 
 // Rows of one time are summed up, with the deviation of their sum.
+/// A pose of a scan matcher, say, is an innovation and no state: it has no blocks.
+TEST_F(JudgeInnovations, ThatArePosesAreJudgedAsAWhole) {
+  std::vector<std::string> files;
+  for (std::uint64_t run = 0; run < 12; ++run) {
+    RngStream draw({12, run, 0, 0, Draw::test});
+    std::string text =
+        "time_s,x_m,y_m,heading_rad,cov_0_0,cov_0_1,cov_0_2,cov_1_1,cov_1_2,cov_2_2\n";
+    for (int k = 0; k < 20; ++k) {
+      text += std::to_string(k) + "," + to_text(draw.normal()) + "," + to_text(draw.normal()) +
+              "," + to_text(0.01 * draw.normal()) + ",1,0,0,1,0,1e-4\n";
+    }
+    files.push_back("i_" + std::to_string(run) + ".csv");
+    write(files.back(), text);
+  }
+  const Called called = judged(files, {"--innovations"});
+  ASSERT_EQ(called.code, 0) << called.err;
+  EXPECT_THAT(called.out, Not(HasSubstr("  position")));
+}
+
 // A bias of one sensor is no bias of another: their sum would be right.
 TEST_F(JudgeInnovations, OfSensorsWithOppositeFaultsAreBothOff) {
   std::vector<std::string> files;
