@@ -18,7 +18,8 @@ The .printed file beside a study has one statement per line:
 
 A note that begins with "not in the paper" marks a comparison of our own. --lead FILE writes three
 sentences to FILE: what the paper says, what was found, and how sure that is. Cells are named by
-their labels. A metric is a column of runs.csv, or share_inside_BLOCK, share_above_BLOCK or
+their labels. A metric is a column of runs.csv; in a claim also variance_of_COLUMN, its variance
+between runs, of which the interval is linearised; or share_inside_BLOCK, share_above_BLOCK or
 stays_above_from_BLOCK (pose, position, heading), which compare the average NEES of all runs with a
 band: that of the paper, or else the chi-square band for the number of runs. These metrics depend on
 the number of runs, so they are computed for every BATCH, a folder that `analyze --csv` wrote for a
@@ -44,6 +45,7 @@ LEVEL = 0.95
 OURS = "not in the paper"  # so begins the note of a comparison of our own
 REPRODUCED_WITHIN = 2.0  # a number that is off by more than this factor is not reproduced
 ALIKE_WITHIN = 0.1  # cells are alike if they differ by less than this share of their mean
+VARIANCE_OF = "variance_of_"  # before a column of runs.csv
 BAND_METRIC = re.compile("(share_inside|share_above|stays_above_from)_(pose|position|heading)$")
 DIMENSIONS = {"pose": 3, "position": 2, "heading": 1}
 
@@ -188,7 +190,8 @@ class Measured:
                 raise PrintedError(f"{self.folder}: there is no cell '{label}': correct the label "
                                    f"(there are {', '.join(self.labels)})")
         known = [name for rows in self.runs.values() for row in rows.values() for name in row]
-        if not BAND_METRIC.match(metric) and known and metric not in known:
+        column = metric.removeprefix(VARIANCE_OF)
+        if not BAND_METRIC.match(metric) and known and column not in known:
             raise PrintedError(f"{self.folder}/runs.csv: there is no column '{metric}': correct "
                                "the metric")
 
@@ -245,10 +248,15 @@ def interval_of(values):
 
 
 def paired(measured, left, right, metric):
-    """The metric {run, (left, right)} of the runs that both cells completed."""
-    l, r = measured.scores(left, metric), measured.scores(right, metric)
+    """The metric {run, (left, right)} of the runs that both cells completed. Of a variance these are
+    squared deviations, whose mean it is."""
+    column = metric.removeprefix(VARIANCE_OF)
+    l, r = measured.scores(left, column), measured.scores(right, column)
     pairs = np.array([(l[run], r[run]) for run in sorted(l.keys() & r.keys())]).reshape(-1, 2)
-    return pairs[np.isfinite(pairs).all(1)]
+    pairs = pairs[np.isfinite(pairs).all(1)]
+    if column == metric or not len(pairs):
+        return pairs
+    return (pairs - pairs.mean(0)) ** 2 * (len(pairs) / max(len(pairs) - 1, 1))
 
 
 def judge_value(value, printed, measured, batches):

@@ -100,6 +100,15 @@ class Printed(unittest.TestCase):
                                ("a < c", "undecided"), ("a ~ b", "holds")):
             self.assertEqual(self.verdicts(f"claim = position_rmse {claim}", measured), [verdict])
 
+    def test_a_variance_between_runs_is_compared(self):
+        wave = (-1.0) ** np.arange(50) * np.linspace(0.5, 1.5, 50)
+        measured = self.measured({"a": 5.0 + wave, "b": 9.0 + 3.0 * wave})
+        self.assertEqual(self.verdicts("claim = variance_of_position_rmse a < b\n", measured),
+                         ["holds"])
+        left, right = printed.paired(measured, "a", "b", "variance_of_position_rmse").mean(0)
+        self.assertAlmostEqual(left, np.var(wave, ddof=1))
+        self.assertAlmostEqual(right, 9.0 * np.var(wave, ddof=1))
+
     def test_numbers_of_a_band_are_those_of_batches(self):
         rising = {"a": [3.0, 1.0, 5.0, 6.0], "b": [3.0, 3.0, 3.0, 3.0]}
         later = {"a": [3.0, 3.0, 3.0, 6.0], "b": [3.0, 3.0, 3.0, 3.0]}
