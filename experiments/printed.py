@@ -248,8 +248,8 @@ def interval_of(values):
 
 
 def paired(measured, left, right, metric):
-    """The metric {run, (left, right)} of the runs that both cells completed. Of a variance these are
-    squared deviations, whose mean it is."""
+    """The metric {run, (left, right)} of the runs that both cells completed. Of a variance these
+    are squared deviations, whose mean it is."""
     column = metric.removeprefix(VARIANCE_OF)
     l, r = measured.scores(left, column), measured.scores(right, column)
     pairs = np.array([(l[run], r[run]) for run in sorted(l.keys() & r.keys())]).reshape(-1, 2)

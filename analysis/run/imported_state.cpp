@@ -56,17 +56,17 @@ ImportedState imported_state(const StoredCell& cell) {
 
 std::vector<StateBlock> blocks_of(std::span<const std::string> components,
                                   std::span<const std::string> units) {
-  struct Kind {
+  struct BlockKind {
     const char* name;
     const char* unit;
     std::vector<std::string> components;
   };
-  static const std::vector<Kind> kKinds = {{"position", "m", {"x", "y", "z"}},
-                                           {"rotation", "rad", {"rx", "ry", "rz"}},
-                                           {"heading", "rad", {"heading"}},
-                                           {"velocity", "mps", {"vx", "vy", "vz"}}};
+  static const std::vector<BlockKind> kKinds = {{"position", "m", {"x", "y", "z"}},
+                                                {"rotation", "rad", {"rx", "ry", "rz"}},
+                                                {"heading", "rad", {"heading"}},
+                                                {"velocity", "mps", {"vx", "vy", "vz"}}};
   std::vector<StateBlock> blocks;
-  for (const Kind& kind : kKinds) {
+  for (const BlockKind& kind : kKinds) {
     StateBlock block{kind.name, {}};
     for (std::size_t k = 0; k < std::min(components.size(), units.size()); ++k) {
       if (units[k] == kind.unit && std::ranges::count(kind.components, components[k]) > 0)

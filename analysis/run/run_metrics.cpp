@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/run/run_metrics.hpp"
 
+#include "analysis/run/imported_errors.hpp"
 #include "analysis/statistics/spread.hpp"
 #include "engine/core/pose.hpp"
 #include "engine/errors.hpp"

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <Eigen/Core>
-
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -23,13 +21,5 @@ struct WhitenedRun {
   std::vector<double> errors_of_exact = {};
   std::uint64_t number = 0;  ///< number of the run in the study
 };
-
-/// Errors of run number `run` at these scans, all NaN.
-WhitenedRun unknown_errors(std::size_t dimension, std::size_t scans, std::uint64_t run);
-
-/// Whitens an imported error with its covariance, at one scan of `run`. Errors up to `rounding` of
-/// components that are known exactly are not counted.
-void whiten_imported(const Eigen::VectorXd& error, const Eigen::MatrixXd& covariance,
-                     double rounding, std::size_t scan, WhitenedRun& run);
 
 }  // namespace montecarta::analysis

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/verdict/block_errors.hpp"
 
+#include "analysis/run/imported_errors.hpp"
 #include "analysis/run/nees.hpp"
-#include "analysis/run/whitened_run.hpp"
 #include "engine/errors.hpp"
 
 #include <utility>

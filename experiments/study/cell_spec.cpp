@@ -192,13 +192,13 @@ bool takes_mountings(const FilterKind& kind) {
   return kind.sensors.empty() || kind.takes_mountings;
 }
 
-enum class Mounted { anywhere, elsewhere };
+enum class SensorPlace { anywhere, elsewhere };
 
 std::string filters_for(const std::string& sensor, std::span<const FilterKind> filters,
-                        Mounted mounted = Mounted::anywhere) {
+                        SensorPlace mounted = SensorPlace::anywhere) {
   std::vector<std::string> names;
   for (const FilterKind& kind : filters) {
-    if (mounted == Mounted::elsewhere && !takes_mountings(kind)) continue;
+    if (mounted == SensorPlace::elsewhere && !takes_mountings(kind)) continue;
     if (kind.sensors.empty() || std::ranges::find(kind.sensors, sensor) != kind.sensors.end())
       names.push_back(kind.name);
   }
@@ -221,7 +221,7 @@ void refuse_mounting(const CellSpec& cell, const Sensor& sensor,
   throw StudyError(cell.place + ": " + cell.filter->name +
                    " takes no sensor that is mounted elsewhere than at the pose (mount_forward, "
                    "mount_left, mount_turn_deg): set these to 0, or use one of " +
-                   filters_for(name_of(sensor), filters, Mounted::elsewhere));
+                   filters_for(name_of(sensor), filters, SensorPlace::elsewhere));
 }
 
 void refuse_association(const Settings& settings, const CellSpec& cell, const Sensor& sensor) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/run/whitened_run.hpp"
+#include "analysis/run/imported_errors.hpp"
 
 #include "analysis/run/nees.hpp"
 #include "engine/numbers/real.hpp"
