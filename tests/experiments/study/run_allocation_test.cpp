@@ -3,6 +3,7 @@
 // mode and on simulated drives of every kind. Three rare things do allocate: the column joint, at
 // 16 scans of a run; resampling of thousands of particles in parts; and a known map, once a run.
 #include "engine/runs/worker.hpp"
+#include "experiments/study/known_filters.hpp"
 #include "experiments/study/make_plan.hpp"
 #include "tests/doubles/allocation_count.hpp"
 #include "tests/experiments/commands/program.hpp"
@@ -45,7 +46,7 @@ class RunAllocation : public BlinkProgram {
   }
   StudyPlan plan_of(const std::filesystem::path& study, std::vector<std::string> more) const {
     more.insert(more.end(), {"study.runs=2", "scenario.world=" + (folder_ / "blink.csv").string()});
-    return make_plan(read_study(study, more));
+    return make_plan(read_study(study, known_filters(), more));
   }
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/tuning/scores.hpp"
 
+#include "experiments/study/known_filters.hpp"
 #include "experiments/tuning/noise_factors.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +15,7 @@ Study study_of_association(const std::string& kind) {
   return parse_study(
       "[study]\nname = tuned\nruns = 2\n[scenario]\nworld = small_loop\n[association]\nkind = " +
           kind + "\n[cells]\ncell = ekf_slam sensor_noise=0.5\n",
-      "tuned.ini", ".");
+      "tuned.ini", ".", known_filters());
 }
 
 TEST(InnovationScore, GivesDetectionsThatAreLeftOutTheSameDensityWithAnyNoise) {
