@@ -97,6 +97,17 @@ std::string gain_note(const TuningResult& result, const TuningConfirmation& conf
                 {"gain", with_interval(confirmation.gain.mean, confirmation.gain.interval)}});
 }
 
+/// Says how many runs the gain leaves out; empty if there is none.
+std::string failed_note(const TuningResult& result, const TuningConfirmation& confirmation) {
+  const std::uint64_t before = confirmation.failed_before, after = confirmation.failed_after;
+  if (before + after == 0) return {};
+  return prose("tuning", "failed",
+               {{"runs", std::to_string(confirmation.runs) +
+                             (result.has_truth ? " fresh runs" : " recorded drives")},
+                {"before", std::to_string(before)},
+                {"after", std::to_string(after)}});
+}
+
 std::string cover_factor_text(double factor) {
   return std::isfinite(factor) ? readable(factor, kFactorDigits) : "no finite factor (runs failed)";
 }
@@ -127,6 +138,8 @@ std::vector<std::string> tuning_notes(const TuningResult& result,
                                       const TuningConfirmation& confirmation) {
   const TunedNoise& noise = result.noise;
   std::vector<std::string> notes = {gain_note(result, confirmation)};
+  if (auto failed = failed_note(result, confirmation); !failed.empty())
+    notes.push_back(std::move(failed));
   const auto note = [&](const char* key, const std::string& factors) {
     if (!factors.empty()) notes.push_back(prose("tuning", key, {{"factors", factors}}));
   };

@@ -66,7 +66,10 @@ struct ScoreDifference {
 /// The result of filters with the old and the new noise on data that played no part in the search.
 struct TuningConfirmation {
   std::uint64_t runs = 0;
-  std::uint64_t seed = 0;     ///< seed of simulated runs
+  std::uint64_t seed = 0;  ///< seed of simulated runs
+  /// Number of runs, or of recorded drives, in which the filter failed with the old and with the
+  /// new noise. They are not in `gain`.
+  std::uint64_t failed_before = 0, failed_after = 0;
   ScoreDifference gain = {};  ///< score with the old noise minus score with the new one
   Answer answer = Answer::untested;
   std::string verdict = {};  ///< the verdict on the new noise in a few words

@@ -2,6 +2,7 @@
 #include "engine/runs/worker.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/runs/step.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -28,31 +29,23 @@ std::string_view defect_of(const PoseEstimate* estimate) {
 }
 
 void start(const RunConditions& conditions, SlamFilter& filter) {
-  if (const std::optional<Prior>& prior = conditions.drive.prior) {
-    const StepContext context(conditions.seed, conditions.run, 0, Parallel::serial(),
-                              &conditions.stop);
-    filter.start_from(context, *prior);
-  } else {
-    filter.start(conditions.itinerary.start);
-  }
+  const StepContext context(conditions.seed, conditions.run, 0, Parallel::serial(),
+                            &conditions.stop);
+  start_filter(filter, context, {conditions.itinerary, conditions.drive});
 }
 
 /// Runs one step, with the scans from `scan` on that end it. Returns a description of the defect of
 /// its estimate; empty if there is none.
-std::string_view take_step(const RunConditions& conditions, const StepContext& context,
-                           SlamFilter& filter, Recorder& recorder, std::size_t& scan) {
-  const Itinerary& itinerary = conditions.itinerary;
-  const std::size_t step = context.step();
-  const Control& control = conditions.drive.controls[step];
-  if (!control.stands(itinerary.moving_controls))
-    filter.predict(context, control, itinerary.duration(step));
-  for (; scan < itinerary.scans() && itinerary.scan_step[scan] == step; ++scan) {
-    if (const auto fix = conditions.drive.fix(scan)) filter.take_fix(*fix);
-    filter.update(context, conditions.drive.scan(scan));
-    const std::string_view flaw = defect_of(recorder.after_scan(filter, scan));
-    if (!flaw.empty()) return flaw;
-  }
-  return defect_of(recorder.after_step(filter, step));
+std::string_view record_step(const RunConditions& conditions, const StepContext& context,
+                             SlamFilter& filter, Recorder& recorder, std::size_t& scan) {
+  const RunInput input{conditions.itinerary, conditions.drive};
+  std::string_view flaw;
+  const bool is_whole = take_step(filter, context, input, scan, [&](std::size_t now) {
+    update_with_scan(filter, context, input, now);
+    flaw = defect_of(recorder.after_scan(filter, now));
+    return flaw.empty();
+  });
+  return is_whole ? defect_of(recorder.after_step(filter, context.step())) : flaw;
 }
 
 }  // namespace
@@ -71,7 +64,7 @@ RunEnd run_one(const RunConditions& conditions, SlamFilter& filter, Recorder& re
       if (conditions.stop.is_set()) return RunEnd::dropped;
       const StepContext context(conditions.seed, conditions.run, step,
                                 conditions.spare_threads.lend(particles), &conditions.stop);
-      const std::string_view flaw = take_step(conditions, context, filter, recorder, scan);
+      const std::string_view flaw = record_step(conditions, context, filter, recorder, scan);
       if (flaw.empty()) continue;
       record.mark_failed(step, flaw, clock.seconds());
       return RunEnd::recorded;

@@ -8,6 +8,7 @@
 #include "engine/records/posix_file.hpp"
 #include "engine/records/result_description.hpp"
 #include "engine/records/run_record.hpp"
+#include "engine/runs/step.hpp"
 #include "engine/runs/worker.hpp"
 #include "engine/text/number_text.hpp"
 #include "engine/text/wrapped_text.hpp"
@@ -83,17 +84,18 @@ class WithinFreeMemory {
   struct rlimit before_ {};
 };
 
-/// Performs one step in the way of the engine. `scan` is the index of the next scan.
-void step_through(SlamFilter& filter, const StudyPlan& plan, const Drive& drive, std::size_t k,
-                  std::size_t& scan) {
-  const Itinerary& itinerary = plan.drives->itinerary_of(plan.first_run);
-  const StepContext context(plan.seed, plan.first_run, static_cast<std::uint32_t>(k),
-                            Parallel::serial());
-  const Control& control = drive.controls[k];
-  if (!control.stands(itinerary.moving_controls))
-    filter.predict(context, control, itinerary.duration(k));
-  if (scan < itinerary.scans() && itinerary.scan_step[scan] == k)
-    filter.update(context, drive.scan(scan++));
+StepContext first_run_at(const StudyPlan& plan, std::size_t k) {
+  return {plan.seed, plan.first_run, static_cast<std::uint32_t>(k), Parallel::serial()};
+}
+
+/// Performs step `k` of the first run. `scan` is the index of the next scan.
+void step_through(SlamFilter& filter, const StudyPlan& plan, const engine::RunInput& input,
+                  std::size_t k, std::size_t& scan) {
+  const StepContext context = first_run_at(plan, k);
+  engine::take_step(filter, context, input, scan, [&](std::size_t now) {
+    engine::update_with_scan(filter, context, input, now);
+    return true;
+  });
   (void)filter.estimate();
 }
 
@@ -137,6 +139,7 @@ double bytes_at_end(const Cell& cell, const Itinerary& itinerary, const Drive& d
 
 std::optional<Trial> trial_of(const Cell& cell, const StudyPlan& plan, const Drive& drive) {
   const Itinerary& itinerary = plan.drives->itinerary_of(plan.first_run);
+  const engine::RunInput input{itinerary, drive};
   const std::size_t steps = itinerary.steps();
   const WithinFreeMemory limit;
   ::malloc_trim(0);  // memory left by an earlier trial would hide that of this one
@@ -149,13 +152,13 @@ std::optional<Trial> trial_of(const Cell& cell, const StudyPlan& plan, const Dri
     const std::unique_ptr<SlamFilter> filter = cell.make_filter();
     std::size_t scan = 0;
     // An external program is started in the first step of its first run.
-    filter->start(itinerary.start);
-    step_through(*filter, plan, drive, 0, scan);
+    engine::start_filter(*filter, first_run_at(plan, 0), input);
+    step_through(*filter, plan, input, 0, scan);
     scan = 0;
     clock = TrialClock(cell);
-    filter->start(itinerary.start);
+    engine::start_filter(*filter, first_run_at(plan, 0), input);
     for (; k < steps && all < kTrialSeconds; ++k) {
-      step_through(*filter, plan, drive, k, scan);
+      step_through(*filter, plan, input, k, scan);
       all = clock.seconds();
       if (k == 0) first = all;
       if (half.steps == 0 && scan > 0 && 2.0 * all > kTrialSeconds) {

@@ -5,6 +5,7 @@
 #include "experiments/commands/commands.hpp"
 #include "experiments/recordings/log_csv.hpp"
 #include "experiments/recordings/recorded_drive.hpp"
+#include "experiments/study/fixes.hpp"
 #include "experiments/study/vehicle_and_sensor.hpp"
 
 #include <algorithm>
@@ -51,6 +52,15 @@ std::vector<Eigen::Vector2d> places_in(const std::vector<LandmarkEstimate>& map)
   return places;
 }
 
+/// A CSV log has no place for fixes of the position.
+void refuse_fixes_in_log(const Study& study) {
+  if (scans_per_fix(study.settings) == 0) return;
+  throw StudyError(study.settings.place("scenario", "fixes") +
+                   ": fixes = position (a CSV log holds detections of landmarks only, so that the "
+                   "fixes would be lost): add --set scenario.fixes=none, which leaves everything "
+                   "else as it is");
+}
+
 }  // namespace
 
 int export_command(const Arguments& arguments) {
@@ -60,6 +70,7 @@ int export_command(const Arguments& arguments) {
                      ": the drive of this study was recorded (it is the same in all runs, and a "
                      "CSV log already): give the folder of scenario.path to the other program");
   }
+  refuse_fixes_in_log(study);
   const fs::path folder = output_of(arguments);
   const StudyPlan plan = plan_of(study, arguments);
   const bool known = study.settings.text("association", "kind") == "known";

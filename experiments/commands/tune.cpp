@@ -141,7 +141,7 @@ int tune_command(const Arguments& arguments) {
     print_findings(result, confirm_on_drives(confirming, plan, parallel), confirming.cells.back());
   } else {
     if (folder) make_directory(*folder);
-    TuningConfirmation confirmation = confirm_on_runs(plan, parallel);
+    TuningConfirmation confirmation = confirm_on_runs(confirming, plan, parallel);
     const StudyAnalysis analysis = analysis_of(
         plan, (folder ? fs::path(*folder) : passing.path()) / kConfirmationFile, arguments);
     confirmation.answer = analysis.cells.back().verdict.answer;

@@ -120,10 +120,12 @@ double time_limit(const Pose& pose, const Eigen::Vector2d& waypoint, const Scena
                    " is not reached within " + to_text(scenario.waypoint_radius) + why_and_remedy);
 }
 
-[[noreturn]] void throw_too_long(const World& world) {
+[[noreturn]] void throw_too_long(const World& world, const Scenario& scenario) {
+  const std::string remedy =
+      scenario.pilot == Pilot::constant ? "a shorter scenario.drive_time" : "fewer scenario.loops";
   throw StudyError("world " + world.name + ": a run has more than " + std::to_string(kMostSteps) +
-                   " steps (no result file would hold it): use fewer scenario.loops or a lower "
-                   "scenario.control_rate");
+                   " steps (no result file would hold it): use " + remedy +
+                   " or a lower scenario.control_rate");
 }
 
 }  // namespace
@@ -197,7 +199,7 @@ void SimulatedDrive::drive_without_noise() {
 }
 
 void SimulatedDrive::take_step(const Pose& from, const Control& control) {
-  if (nominal_.size() == kMostSteps) throw_too_long(world_);
+  if (nominal_.size() == kMostSteps) throw_too_long(world_, scenario_);
   nominal_.push_back(control);
   path_.push_back(move(from, control, 1.0 / scenario_.control_rate, scenario_.vehicle));
 }

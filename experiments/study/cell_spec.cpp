@@ -293,10 +293,12 @@ void refuse_sensors(const Settings& settings, std::span<const CellSpec> cells,
 std::span<const Parameter> mismatch_options() {
   static const std::vector<Parameter> options = {
       number_parameter("motion_noise", "1", 1e-3, 1e3,
-                       "factor on the standard deviations of the controls that the filter assumes"),
+                       "factor on the standard deviations of the controls and of the noise of the "
+                       "step that the filter assumes"),
       number_parameter(
           "sensor_noise", "1", 1e-3, 1e3,
-          "factor on the standard deviations of the detections that the filter assumes")};
+          "factor on the standard deviations of the detections and of position fixes that the "
+          "filter assumes")};
   return options;
 }
 

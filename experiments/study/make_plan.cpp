@@ -198,8 +198,8 @@ void refuse_judging_from(const Study& study, const Itinerary& itinerary) {
                      "and a recorded drive (it is judged at the fixes of its references): take "
                      "judge_from out");
   }
+  if (first_judged_scan(study, itinerary) < itinerary.scans()) return;
   const double last = itinerary.step_time.at(itinerary.scan_step.back());
-  if (from <= last) return;
   throw StudyError(problem + "(s; the last scan is at " + to_text(last) +
                    " s, so that nothing would be judged): give an earlier time");
 }
@@ -317,6 +317,13 @@ void require_summable(const Study& study, const std::optional<RunRange>& range) 
 }
 
 }  // namespace
+
+std::size_t first_judged_scan(const Study& study, const Itinerary& itinerary) {
+  const double from = study.settings.number("study", "judge_from");
+  const auto time_of = [&](std::uint32_t step) { return itinerary.step_time[step]; };
+  const auto first = std::ranges::lower_bound(itinerary.scan_step, from, {}, time_of);
+  return static_cast<std::size_t>(first - itinerary.scan_step.begin());
+}
 
 StudyPlan make_plan(const Study& study, std::optional<RunRange> range, ExternalPrograms programs) {
   const Settings& settings = study.settings;

@@ -5,6 +5,7 @@
 #include "experiments/external/external_filter.hpp"
 #include "experiments/study/study.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -32,6 +33,9 @@ std::string objection_to_joint(const Study& study);
 /// objection_to_joint(); empty if it can.
 std::string objection_to_observability(const Study& study);
 std::string objection_to_evolution(const Study& study);
+
+/// The number of the first scan that is judged: that at study.judge_from or later.
+std::size_t first_judged_scan(const Study& study, const Itinerary& itinerary);
 
 /// Makes the plan of a study: its drives and its filters, for all runs or those in `range`. Filters
 /// that are external programs cannot be made unless `programs` allows it. Throws StudyError if

@@ -2,6 +2,7 @@
 #include "experiments/tuning/filter_on_drive.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/runs/step.hpp"
 
 #include <cmath>
 #include <new>
@@ -13,6 +14,10 @@ StepContext context_at(const DrivePart& part, std::size_t step) {
   return {part.plan.seed, part.run, static_cast<std::uint32_t>(step), Parallel::serial()};
 }
 
+engine::RunInput input_of(const DrivePart& part) {
+  return {part.plan.drives->itinerary_of(part.run), part.drive};
+}
+
 bool is_finite(const PoseMoments& moments) {
   const Pose& mean = moments.mean;
   return std::isfinite(mean.x) && std::isfinite(mean.y) && std::isfinite(mean.heading) &&
@@ -21,20 +26,19 @@ bool is_finite(const PoseMoments& moments) {
 
 /// Runs the steps until the last scan. Returns whether every estimate was finite.
 bool take_steps(const DrivePart& part, SlamFilter& filter, const AfterScan& after_scan) {
-  const Itinerary& itinerary = part.plan.drives->itinerary_of(part.run);
+  const engine::RunInput input = input_of(part);
   std::size_t scan = 0;
-  for (std::size_t step = 0; step < itinerary.steps() && scan < part.scans; ++step) {
+  for (std::size_t step = 0; step < input.itinerary.steps() && scan < part.scans; ++step) {
     const StepContext context = context_at(part, step);
-    const Control& control = part.drive.controls[step];
-    if (!control.stands(itinerary.moving_controls))
-      filter.predict(context, control, itinerary.duration(step));
-    for (; scan < part.scans && itinerary.scan_step[scan] == step; ++scan) {
-      const bool is_given = (scan + 1) % part.interval == 0;
-      if (is_given) filter.update(context, part.drive.scan(scan));
-      const PoseEstimate estimate = filter.estimate();
-      if (!is_finite(judged_moments(estimate))) return false;
-      after_scan(scan, filter, is_given);
-    }
+    const auto at_scan = [&](std::size_t now) {
+      if (now >= part.scans) return true;
+      const bool is_given = (now + 1) % part.interval == 0;
+      if (is_given) engine::update_with_scan(filter, context, input, now);
+      if (!is_finite(judged_moments(filter.estimate()))) return false;
+      after_scan(now, filter, is_given);
+      return true;
+    };
+    if (!engine::take_step(filter, context, input, scan, at_scan)) return false;
   }
   return true;
 }
@@ -43,11 +47,7 @@ bool take_steps(const DrivePart& part, SlamFilter& filter, const AfterScan& afte
 
 bool run_filter(const DrivePart& part, SlamFilter& filter, const AfterScan& after_scan) {
   try {
-    if (part.drive.prior) {
-      filter.start_from(context_at(part, 0), *part.drive.prior);
-    } else {
-      filter.start(part.plan.drives->itinerary_of(part.run).start);
-    }
+    engine::start_filter(filter, context_at(part, 0), input_of(part));
     return take_steps(part, filter, after_scan);
   } catch (const std::bad_alloc&) {
     throw;

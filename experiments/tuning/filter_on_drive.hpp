@@ -16,7 +16,8 @@ struct DrivePart {
   const Drive& drive;
   /// Number of scans after which the filter stops.
   std::size_t scans;
-  /// The filter is given every n-th scan, the first of them with the index n - 1.
+  /// The filter is given every n-th scan and the fix at its instant, the first of them with the
+  /// index n - 1.
   std::size_t interval = 1;
 };
 

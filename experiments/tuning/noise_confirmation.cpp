@@ -39,18 +39,21 @@ double nees_of(const PoseEstimate& estimate, const Pose& truth) {
 
 /// What one run says of one cell.
 struct ConfirmedRun {
-  double score = kNaN;  ///< mean log score; NaN if the filter failed
+  bool is_whole = false;  ///< false if the filter failed
+  double score = kNaN;    ///< mean log score; NaN if there is none
   double nees_at_end = kInfinity, largest_nees = kInfinity;
 };
 
+/// `first` is the number of the first scan that is judged.
 ConfirmedRun confirmed_run(const StudyPlan& plan, std::uint64_t run, const Drive& drive,
-                           const Cell& cell) {
+                           const Cell& cell, std::size_t first) {
   const Itinerary& itinerary = plan.drives->itinerary_of(run);
   ScoreSum score;
   double last = 0.0, largest = 0.0;
   const std::unique_ptr<SlamFilter> filter = cell.make_filter();
   const bool is_whole = run_filter({plan, run, drive, itinerary.scans()}, *filter,
                                    [&](std::size_t scan, const SlamFilter& now, bool /*is_given*/) {
+                                     if (scan < first) return;
                                      const PoseEstimate estimate = now.estimate();
                                      const Pose& truth = drive.truth[itinerary.scan_step[scan]];
                                      const double one = pose_score(estimate, truth);
@@ -59,7 +62,7 @@ ConfirmedRun confirmed_run(const StudyPlan& plan, std::uint64_t run, const Drive
                                      largest = std::max(largest, last);
                                    });
   if (!is_whole) return {};
-  return {score.mean(), last, largest};
+  return {true, score.mean(), last, largest};
 }
 
 ScoreDifference mean_difference(const std::vector<double>& differences) {
@@ -99,6 +102,13 @@ SecondHalf second_half(const StudyPlan& plan, std::uint64_t run, const Drive& dr
   return found;
 }
 
+/// Number of runs, or of drives, in which the filter of one cell failed.
+template <class Findings>
+std::uint64_t failed_in(const std::vector<std::array<Findings, 2>>& runs, CellToConfirm cell) {
+  const auto n = std::ranges::count_if(runs, [&](const auto& run) { return !run[cell].is_whole; });
+  return static_cast<std::uint64_t>(n);
+}
+
 /// Differences of the mean scores of each stretch.
 void add_differences(const SecondHalf& before, const SecondHalf& after,
                      std::vector<double>& differences) {
@@ -109,15 +119,18 @@ void add_differences(const SecondHalf& before, const SecondHalf& after,
   }
 }
 
-/// Takes the verdict on the innovations of all second halves.
+/// Takes the verdict on the innovations of all second halves in which the filter did not fail.
+/// Whiteness and size are judged together (STATISTICS 9).
 void judge_innovations(std::vector<SecondHalf> halves, double within,
                        TuningConfirmation& confirmation) {
+  constexpr double kLevelOfEach = 1.0 - (1.0 - kUsualLevel) / 2.0;
+  std::erase_if(halves, [](const SecondHalf& half) { return !half.is_whole; });
   std::size_t scans = 0, longest = 0;
   for (std::size_t run = 0; run < halves.size(); ++run) {
     if (halves[run].times.size() > scans) longest = run;
     scans = std::max(scans, halves[run].times.size());
   }
-  const std::vector<double> times = halves[longest].times;
+  const std::vector<double> times = halves.empty() ? std::vector<double>() : halves[longest].times;
   InnovationSums sums(scans);
   for (std::size_t run = 0; run < halves.size(); ++run) {
     SecondHalf& half = halves[run];
@@ -130,7 +143,7 @@ void judge_innovations(std::vector<SecondHalf> halves, double within,
     confirmation.verdict = "not judged, since there are none";
     return;
   }
-  const Innovations found = sums.result(times, kUsualLevel, within);
+  const Innovations found = sums.result(times, kLevelOfEach, within);
   confirmation.answer =
       found.whiteness() == Whiteness::not_white && found.verdict.answer == Answer::consistent
           ? Answer::inconsistent
@@ -149,13 +162,15 @@ Study confirming_study(const Study& study, const CellSpec& cell, const TunedNois
       study.settings.count("study", "runs"), seed);
 }
 
-TuningConfirmation confirm_on_runs(const StudyPlan& plan, const Parallel& parallel) {
+TuningConfirmation confirm_on_runs(const Study& study, const StudyPlan& plan,
+                                   const Parallel& parallel) {
   std::vector<std::array<ConfirmedRun, 2>> runs(plan.runs);
   parallel.for_each(runs.size(), [&](std::size_t run) {
     Drive drive;
     plan.drives->generate(run, drive);
+    const std::size_t first = first_judged_scan(study, plan.drives->itinerary_of(run));
     for (std::size_t cell = 0; cell < 2; ++cell)
-      runs[run][cell] = confirmed_run(plan, run, drive, plan.cells[cell]);
+      runs[run][cell] = confirmed_run(plan, run, drive, plan.cells[cell], first);
   });
   std::vector<double> gains, at_end, of_path;
   for (const auto& run : runs) {
@@ -166,6 +181,8 @@ TuningConfirmation confirm_on_runs(const StudyPlan& plan, const Parallel& parall
   const double quantile = chi_squared_quantile(kUsualLevel, 3.0);
   return {.runs = plan.runs,
           .seed = plan.seed,
+          .failed_before = failed_in(runs, as_it_was),
+          .failed_after = failed_in(runs, tuned),
           .gain = mean_difference(gains),
           .covering_at_end = conformal_bound(at_end, kUsualLevel) / quantile,
           .covering_path = conformal_bound(of_path, kUsualLevel) / quantile};
@@ -182,6 +199,7 @@ TuningConfirmation confirm_on_drives(const Study& study, const StudyPlan& plan,
       halves[run][cell] = second_half(plan, run, drive, plan.cells[cell],
                                       InnovationScore(study, study.cells[cell]));
   });
+  const std::uint64_t before = failed_in(halves, as_it_was), after = failed_in(halves, tuned);
   std::vector<double> gains;
   std::vector<SecondHalf> of_tuned;
   for (auto& half : halves) {
@@ -189,6 +207,8 @@ TuningConfirmation confirm_on_drives(const Study& study, const StudyPlan& plan,
     of_tuned.push_back(std::move(half[tuned]));
   }
   TuningConfirmation confirmation{.runs = drives,
+                                  .failed_before = before,
+                                  .failed_after = after,
                                   .gain = mean_difference(gains),
                                   .covering_at_end = kNaN,
                                   .covering_path = kNaN};

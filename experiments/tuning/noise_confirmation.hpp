@@ -16,8 +16,10 @@ Study confirming_study(const Study& study, const CellSpec& cell, const TunedNois
                        std::uint64_t seed);
 
 /// Compares both cells of confirming_study() on its runs, and adds the covering factors of the
-/// second one (STATISTICS 23). The verdict is left to the caller, who runs the study.
-TuningConfirmation confirm_on_runs(const StudyPlan& plan, const Parallel& parallel);
+/// second one (STATISTICS 23), by the scans that are judged. The verdict is left to the caller, who
+/// runs the study.
+TuningConfirmation confirm_on_runs(const Study& study, const StudyPlan& plan,
+                                   const Parallel& parallel);
 
 /// Compares both cells on the second half of each recorded drive, with a verdict on the innovations
 /// of the second cell there. `plan` is that of `study`.

@@ -22,7 +22,7 @@ constexpr std::size_t kFewestScans = 2;
 std::uint64_t runs_to_learn_from(const Study& study, const StudyPlan& plan) {
   if (!plan.drives->itinerary().has_truth)
     return std::max<std::uint64_t>(plan.drives->own_drives(), 1);
-  const std::uint64_t fewest = fewest_for_bound(kUsualLevel) + 1;
+  const std::uint64_t fewest = fewest_for_bound(kUsualLevel);
   if (plan.runs >= fewest) return plan.runs;
   throw StudyError(study.settings.place("study", "runs") + ": runs = " + std::to_string(plan.runs) +
                    " (too few to choose noise by): give " + std::to_string(fewest) +
@@ -46,7 +46,8 @@ NoiseLandscape::NoiseLandscape(const Study& study, const CellSpec& cell, const P
       runs_(runs_to_learn_from(study, plan_)),
       parts_of_run_(has_truth() ? 1 : (kStretches + runs_ - 1) / runs_) {
   std::size_t fewest = std::numeric_limits<std::size_t>::max();
-  for (std::uint64_t run = 0; run < runs_; ++run) fewest = std::min(fewest, scans_of(run));
+  for (std::uint64_t run = 0; run < runs_; ++run)
+    fewest = std::min(fewest, scans_of(run) - first_scan_of(run));
   for (std::size_t k = 0; k < kPredictionIntervals.size(); ++k) {
     if (fewest >= kFewestScans * kPredictionIntervals[k] * parts_of_run_) intervals_.push_back(k);
   }
@@ -60,6 +61,10 @@ NoiseLandscape::NoiseLandscape(const Study& study, const CellSpec& cell, const P
 std::size_t NoiseLandscape::scans_of(std::uint64_t run) const {
   const std::size_t scans = plan_.drives->itinerary_of(run).scans();
   return has_truth() ? scans : scans / 2;
+}
+
+std::size_t NoiseLandscape::first_scan_of(std::uint64_t run) const {
+  return first_judged_scan(study_, plan_.drives->itinerary_of(run));
 }
 
 void NoiseLandscape::compute(std::span<const LatticePoint> points, std::uint64_t runs) {
@@ -102,10 +107,11 @@ void NoiseLandscape::score(const Work& work, std::uint64_t run, const Drive& dri
                            std::size_t interval) const {
   const Itinerary& itinerary = plan_.drives->itinerary_of(run);
   const DrivePart part{plan_, run, drive, scans_of(run), kPredictionIntervals[interval]};
+  const std::size_t first = first_scan_of(run);
   const std::unique_ptr<SlamFilter> filter = work.cell->make_filter();
   const bool is_whole =
       run_filter(part, *filter, [&](std::size_t scan, const SlamFilter& now, bool is_given) {
-        if (!has_truth() && !is_given) return;
+        if (scan < first || (!has_truth() && !is_given)) return;
         const double score =
             has_truth() ? pose_score(now.estimate(), drive.truth[itinerary.scan_step[scan]])
                         : work.innovation_score(now.report(), drive.scan(scan));
@@ -123,12 +129,20 @@ double NoiseLandscape::mean(const LatticePoint& where, std::uint64_t runs,
   for (const std::size_t interval : intervals) {
     for (std::size_t part = 0; part < runs * parts_of_run_; ++part)
       all.add(point.parts[part][interval]);
+  }
+  const bool is_scored = all.n > 0.0 && !has_failed(where, runs, intervals);
+  return is_scored ? all.mean() : std::numeric_limits<double>::infinity();
+}
+
+bool NoiseLandscape::has_failed(const LatticePoint& where, std::uint64_t runs,
+                                const Intervals& intervals) const {
+  const std::vector<std::uint8_t>& failures = points_.at(where).has_failed;
+  for (const std::size_t interval : intervals) {
     for (std::uint64_t run = 0; run < runs; ++run) {
-      if (point.has_failed[run * kPredictionIntervals.size() + interval] != 0)
-        return std::numeric_limits<double>::infinity();
+      if (failures[run * kPredictionIntervals.size() + interval] != 0) return true;
     }
   }
-  return all.n == 0.0 ? std::numeric_limits<double>::infinity() : all.mean();
+  return false;
 }
 
 std::vector<double> NoiseLandscape::shares(const LatticePoint& where,

@@ -59,6 +59,8 @@ class NoiseLandscape {
   /// Mean score of the first `runs` runs at a point that was computed, over all scans that are
   /// scored at these intervals; infinite where the filter fails.
   double mean(const LatticePoint& point, std::uint64_t runs, const Intervals& intervals) const;
+  /// Returns whether the filter fails in one of the first `runs` runs.
+  bool has_failed(const LatticePoint& point, std::uint64_t runs, const Intervals& intervals) const;
   /// {part} Shares of the parts in mean() of all runs, which has the mean over parts.
   std::vector<double> shares(const LatticePoint& point, const Intervals& intervals) const;
 
@@ -77,6 +79,8 @@ class NoiseLandscape {
     InnovationScore innovation_score;
   };
   std::size_t scans_of(std::uint64_t run) const;
+  /// Number of the first scan whose score counts (study.judge_from).
+  std::size_t first_scan_of(std::uint64_t run) const;
   void compute(const std::vector<Work>& work, std::uint64_t runs) const;
   void score(const Work& work, std::uint64_t run, const Drive& drive, std::size_t interval) const;
 

@@ -61,6 +61,7 @@ class NoiseSearch {
       const auto points = grid_about(centre, sides, step, is_free_);
       landscape_->compute(points, runs);
       const LatticePoint least = least_of(*landscape_, points, runs, intervals_);
+      if (!std::isfinite(landscape_->mean(least, runs, intervals_))) return centre;
       const bool is_inside = std::max(std::abs(least.motion - centre.motion),
                                       std::abs(least.sensor - centre.sensor)) < sides * step;
       if (least == centre || (sides > 1 && is_inside)) return least;
@@ -147,14 +148,21 @@ class NoiseSearch {
   Axes is_free_;
 };
 
-/// Returns on which factors the score depends.
+/// Returns on which factors the score depends. Where the filter fails, that is not known, and the
+/// factors are searched.
 Axes free_axes(NoiseLandscape& landscape, std::uint64_t runs) {
   const LatticePoint here, motion{kOctave, 0}, sensor{0, kOctave};
   landscape.compute(std::array{here, motion, sensor}, runs);
   const auto mean = [&](const LatticePoint& point) {
     return landscape.mean(point, runs, landscape.intervals());
   };
-  return {mean(motion) != mean(here), mean(sensor) != mean(here)};
+  const auto has_failed = [&](const LatticePoint& point) {
+    return landscape.has_failed(point, runs, landscape.intervals());
+  };
+  const auto is_free = [&](const LatticePoint& point) {
+    return mean(point) != mean(here) || (has_failed(here) && has_failed(point));
+  };
+  return {is_free(motion), is_free(sensor)};
 }
 
 NoiseGrid grid_of(NoiseLandscape& landscape, const LatticePoint& centre, const Axes& is_free) {

@@ -105,9 +105,10 @@ class CompressedGaussian {
     return near_.update_with(point_of_[slot], detected, iterations, expected);
   }
   /// Does what JointGaussian::update_with_fix() does.
-  double update_with_fix(const PositionFix& fix, double sigma) {
+  [[nodiscard]] ObservationStatus update_with_fix(const PositionFix& fix, double sigma,
+                                                  double& log_density) {
     ++updates_;
-    return near_.update_with_fix(fix, sigma);
+    return near_.update_with_fix(fix, sigma, log_density);
   }
   /// Does what JointGaussian::centre_on_pose() does, and makes all landmarks near.
   void centre_on_pose();

@@ -58,7 +58,7 @@ void JointBelief::update_with(const MotionIncrement& motion, Scan scan,
   outcome_ = {};
   used_detections_.clear();
   linearisation_->move(motion, system_);
-  if (fix) outcome_.log_likelihood += system_.gaussian.update_with_fix(*fix, sigma_fix_.value());
+  if (fix) update_with(*fix);
   association_.known() ? association_.pair_by_identity(scan) : pair_nearest(scan);
   select_matched();
   for (std::size_t k = 0; k < scan.size(); ++k) {
@@ -69,6 +69,14 @@ void JointBelief::update_with(const MotionIncrement& motion, Scan scan,
     }
   }
   linearisation_->end_scan(system_.gaussian);
+}
+
+/// Updates the belief with a fix, or counts a fault.
+void JointBelief::update_with(const PositionFix& fix) {
+  double log_density = 0.0;
+  const auto status = system_.gaussian.update_with_fix(fix, sigma_fix_.value(), log_density);
+  if (status == CompressedGaussian::ObservationStatus::faulty) ++outcome_.faults;
+  outcome_.log_likelihood += log_density;
 }
 
 /// Makes the landmarks that the scan matches near.

@@ -80,6 +80,7 @@ class JointBelief {
   void pair_nearest(Scan scan);
   void select_matched();
   bool predict(std::size_t slot, ExpectedObservation& expected);
+  void update_with(const PositionFix& fix);
   void update_with(std::size_t k, const Detection& detection);
 
   void find_advancing(Scan scan);

@@ -307,17 +307,19 @@ JointGaussian::ObservationStatus JointGaussian::update_with(std::size_t slot,
 
 /// H is one for the position and zero else, for both errors, since the covariance that is kept is
 /// that of e.
-double JointGaussian::update_with_fix(const PositionFix& fix, double sigma) {
+JointGaussian::ObservationStatus JointGaussian::update_with_fix(const PositionFix& fix,
+                                                                double sigma, double& log_density) {
   const auto L =
       factor(pose_.covariance.topLeftCorner<2, 2>() + sigma * sigma * Eigen::Matrix2d::Identity());
-  expect(L.has_value(), "the covariance of a position is not positive semidefinite");
+  if (!L) return ObservationStatus::faulty;
   const Eigen::Matrix2d white = inverse_transposed(*L);
   gain_pose_ = pose_.covariance.leftCols<2>() * white;
   gain_map_.leftCols<2>().topRows(rows()).noalias() =
       map_.cross.leftCols<2>().topRows(rows()).lazyProduct(white);
   const Eigen::Vector2d innovation = L->whiten(fix - place_of(pose_.mean));
   condition(innovation);
-  return log_normal_density(innovation.squaredNorm(), *L, 2.0);
+  log_density = log_normal_density(innovation.squaredNorm(), *L, 2.0);
+  return ObservationStatus::usable;
 }
 
 /// W = P H' L^-T.

@@ -152,8 +152,10 @@ class JointGaussian {
   ObservationStatus update_with(std::size_t slot, const Eigen::Vector2d& detected, int iterations,
                                 ExpectedObservation& expected);
   /// Conditions the Gaussian on a fix of the position of the vehicle with this standard deviation
-  /// [m] (EQUATIONS (24.1)). Returns the log of the density of its innovation.
-  double update_with_fix(const PositionFix& fix, double sigma);
+  /// [m] (EQUATIONS (24.1)). `log_density` becomes the log of the density of its innovation.
+  /// Nothing changes if S is not positive definite (`faulty`).
+  [[nodiscard]] ObservationStatus update_with_fix(const PositionFix& fix, double sigma,
+                                                  double& log_density);
   /// Adds a landmark from one detection that fixes it, with its correlations. `behind` [m] is the
   /// vector to the estimated position of the vehicle from the point at which the landmark is
   /// linearised by the heading.

@@ -29,22 +29,22 @@ struct IncrementNoise {
 /// vehicle that drives backwards is translated backwards instead of being rotated by pi.
 template <class Real>
 struct TurnedWay {
-  Real before, way, after;
+  Real rot1, trans, rot2;
 };
 
 template <class Real>
 TurnedWay<Real> turned_way_of(const BodyStep<Real>& step) {
   const Real sign = select(step.forward < Real(0.0), Real(-1.0), Real(1.0));
-  const Real way = length(step.forward, step.left);
-  const Real ahead = select(way > Real(0.0), Real(sign * step.forward), Real(1.0));
-  const Real before = atan2(Real(sign * step.left), ahead);
-  return {before, sign * way, step.turn - before};
+  const Real trans = length(step.forward, step.left);
+  const Real ahead = select(trans > Real(0.0), Real(sign * step.forward), Real(1.0));
+  const Real rot1 = atan2(Real(sign * step.left), ahead);
+  return {rot1, sign * trans, step.turn - rot1};
 }
 
 template <class Real>
 BodyStep<Real> step_of(const TurnedWay<Real>& turned) {
-  const Direction<Real> course = direction_of(turned.before);
-  return {turned.way * course.cosine, turned.way * course.sine, turned.before + turned.after};
+  const Direction<Real> course = direction_of(turned.rot1);
+  return {turned.trans * course.cosine, turned.trans * course.sine, turned.rot1 + turned.rot2};
 }
 
 /// Standard deviations of the three independent noises of `step`, which lasts `duration` [s].
@@ -54,11 +54,11 @@ inline std::array<double, 3> increment_deviations(const IncrementNoise& noise,
     const double root = std::sqrt(duration);
     return {noise.sigma[0] * root, noise.sigma[1] * root, noise.sigma[2] * root};
   }
-  const auto [before, way, after] = turned_way_of(step);
-  const double b = before * before, w = way * way, a = after * after;
-  return {std::sqrt(noise.alpha[0] * b + noise.alpha[1] * w),
-          std::sqrt(noise.alpha[2] * w + noise.alpha[3] * (b + a)),
-          std::sqrt(noise.alpha[0] * a + noise.alpha[1] * w)};
+  const auto [rot1, trans, rot2] = turned_way_of(step);
+  const double first = rot1 * rot1, way = trans * trans, second = rot2 * rot2;
+  return {std::sqrt(noise.alpha[0] * first + noise.alpha[1] * way),
+          std::sqrt(noise.alpha[2] * way + noise.alpha[3] * (first + second)),
+          std::sqrt(noise.alpha[0] * second + noise.alpha[1] * way)};
 }
 
 /// The derivatives of `step` by its three noises, each times its deviation: columns of a square
@@ -69,7 +69,7 @@ inline std::array<BodyStep<double>, 3> increment_columns(const IncrementNoise& n
   const auto [first, second, third] = increment_deviations(noise, step, duration);
   if (noise.model == IncrementModel::additive)
     return {{{first, 0.0, 0.0}, {0.0, second, 0.0}, {0.0, 0.0, third}}};
-  const Direction<double> course = direction_of(turned_way_of(step).before);
+  const Direction<double> course = direction_of(turned_way_of(step).rot1);
   return {{{-first * step.left, first * step.forward, first},
            {second * course.cosine, second * course.sine, 0.0},
            {0.0, 0.0, third}}};
@@ -82,8 +82,8 @@ BodyStep<Real> perturbed(const BodyStep<Real>& step, IncrementModel model,
   const std::array<Real, 3> by{deviations[0] * e[0], deviations[1] * e[1], deviations[2] * e[2]};
   if (model == IncrementModel::additive)
     return {step.forward + by[0], step.left + by[1], step.turn + by[2]};
-  const auto [before, way, after] = turned_way_of(step);
-  return step_of(TurnedWay<Real>{before + by[0], way + by[1], after + by[2]});
+  const auto [rot1, trans, rot2] = turned_way_of(step);
+  return step_of(TurnedWay<Real>{rot1 + by[0], trans + by[1], rot2 + by[2]});
 }
 
 }  // namespace montecarta::models

@@ -103,6 +103,15 @@ TEST_F(Export, AnEstimatorIsGivenAKnownMapAndStartWithTheirErrors) {
   EXPECT_THAT(text_of("drives/belief.ini"), HasSubstr("map = known\nmap_sigma_m = 0.5\n"));
 }
 
+TEST_F(Export, RefusesFixesThatALogCannotHold) {
+  const std::vector<std::string> words = {"--set", "cells.cell=ekf_slam", "--set",
+                                          "scenario.fixes=position"};
+  const Called refused = run_export(words);
+  EXPECT_NE(refused.code, 0);
+  EXPECT_THAT(refused.err, testing::HasSubstr("--set scenario.fixes=none"));
+  EXPECT_FALSE(exists("drives"));
+}
+
 TEST_F(Export, WrongInputIsNamed) {
   ASSERT_EQ(run_export().code, 0);
   expect_refused({"export", "blink.ini", "-o", "drives"}, "drives: not a new folder");

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/commands/check.hpp"
-#include "tests/doubles/scripted_drives.hpp"
-#include "tests/doubles/scripted_filter.hpp"
+#include "tests/doubles/filter_with_fixes.hpp"
 
 #include <gtest/gtest.h>
 
@@ -66,6 +65,16 @@ Trial trial_of_filter(std::size_t bytes) {
 
 // The start is one of the process, not of each run: 200 of them would be a minute.
 TEST(Trial, LeavesOutTheStartOfAProgram) { EXPECT_LT(trial_of_filter(0).seconds, 10.0); }
+
+TEST(Trial, GivesTheFilterItsFixes) {
+  StudyPlan plan;
+  plan.drives = std::make_shared<ScriptedDrives>(40);
+  std::vector<PositionFix> taken;
+  Cell cell;
+  cell.make_filter = [&taken] { return std::make_unique<FilterWithFixes>(taken); };
+  ASSERT_TRUE(trial_of(cell, plan, drive_with_fixes(*plan.drives)));
+  EXPECT_EQ(taken.size(), 5U);
+}
 
 TEST(Trial, MeasuresWhatAFilterHolds) {
   EXPECT_GT(trial_of_filter(200'000'000).bytes, 190e6);

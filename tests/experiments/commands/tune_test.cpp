@@ -166,9 +166,17 @@ TEST_F(Tune, TakesADriveWithoutTruthByItsInnovations) {
                  "has the same score with any noise");
 }
 
+TEST_F(Tune, TakesNoFailureForAScore) {
+  const Called called = tune({"study.runs=19", "belief.map=estimated", "scenario.start_sigma_m=0",
+                              "scenario.start_sigma_deg=0", "association.kind=nearest",
+                              "association.most_landmarks=1"});
+  EXPECT_THAT(called.err, HasSubstr("its score has no minimum near motion_noise x 1"));
+  EXPECT_THAT(called.err, HasSubstr("the filter fails near by"));
+}
+
 TEST_F(Tune, RefusesWhatCannotBeTuned) {
   expect_refused({"tune", "ring.ini", "--cell", "ekf_slma"}, "did you mean ekf_slam?");
-  expect_refused({"tune", "ring.ini", "--set", "study.runs=19"}, "too few to choose noise by");
+  expect_refused({"tune", "ring.ini", "--set", "study.runs=18"}, "too few to choose noise by");
   expect_refused({"tune", "ring.ini", "--seed", "1"}, "--seed 1: the seed of the study");
   expect_refused({"tune", "mine.h5"}, "mine.h5: a result, not a study");
   write("blink.csv", kBlinkWorld);

@@ -44,6 +44,10 @@ TEST(ConstantPilot, RefusesControlsThatItsVehicleDoesNotHave) {
               HasSubstr("drive_time does not apply to scenario.pilot = closed_loop"));
   EXPECT_THAT(complaint_of([] { held({"scenario.drive_time=0.1"}); }),
               HasSubstr("ends before the first scan"));
+  EXPECT_THAT(complaint_of([] {
+                held({"scenario.drive_time=1e8", "scenario.control_rate=1000"});
+              }),
+              AllOf(HasSubstr("scenario.drive_time"), Not(HasSubstr("scenario.loops"))));
 }
 
 TEST(ConstantPilot, DrivesStraightOn) {

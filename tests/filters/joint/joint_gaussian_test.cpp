@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/joint/joint_gaussian.hpp"
 
+#include "filters/joint/joint_filter.hpp"
 #include "filters/plain/ekf_slam.hpp"
+#include "tests/filters/small_world.hpp"
 
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
@@ -55,6 +57,27 @@ TEST(JointGaussian, MovedOnceForManyStepsIsTheTextbookFilterMovedAtEach) {
   EXPECT_LT((mean_of(gaussian) - textbook.mean()).norm(), 1e-12);
   EXPECT_LT((gaussian.pose().covariance - textbook.covariance().topLeftCorner<3, 3>()).norm(),
             1e-12);
+}
+
+TEST(JointGaussian, AFixIsFaultyAndChangesNothingIfItsCovarianceIsNotPositive) {
+  JointGaussian gaussian(kRough, Retraction::additive, 3);
+  gaussian.start({1.0, 2.0, 0.5}, -Eigen::Matrix3d::Identity());
+  double log_density = 0.0;
+  EXPECT_EQ(gaussian.update_with_fix({5.0, 5.0}, 0.1, log_density),
+            JointGaussian::ObservationStatus::faulty);
+  EXPECT_EQ(log_density, 0.0);
+  EXPECT_EQ(gaussian.pose().mean.x, 1.0);
+  EXPECT_EQ(gaussian.pose().covariance, -Eigen::Matrix3d::Identity());
+}
+
+TEST(JointFilter, CountsAFaultOfAFix) {
+  const auto filter = make_ekf_slam(
+      setup_for(ekf_slam_kind(), SmallWorldSettings{.noise = {.sigma_fix = 0.1}}, {}));
+  const StepContext context(1, 0, 0, Parallel::serial());
+  filter->start_from(context, {.pose = {{}, -Eigen::Matrix3d::Identity()}});
+  filter->take_fix({5.0, 5.0});
+  filter->update(context, {});
+  EXPECT_EQ(filter->report().numerical_faults, 1U);
 }
 
 TEST(JointGaussian, AnIteratedDetectionEndsAtTheTopOfThePosterior) {

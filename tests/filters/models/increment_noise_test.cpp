@@ -21,7 +21,7 @@ const std::vector<BodyStep<double>>& some_steps() {
 TEST(TurnedWay, IsTheStep) {
   for (const BodyStep<double>& step : some_steps()) {
     const auto turned = turned_way_of(step);
-    EXPECT_LE(std::abs(turned.before), 0.5 * kPi);
+    EXPECT_LE(std::abs(turned.rot1), 0.5 * kPi);
     const BodyStep<double> again = step_of(turned);
     EXPECT_NEAR(again.forward, step.forward, 1e-15);
     EXPECT_NEAR(again.left, step.left, 1e-15);
@@ -34,9 +34,9 @@ TEST(TurnedWay, IsTheSameInEveryLane) {
     const auto one = turned_way_of(step);
     const auto lanes = turned_way_of(BodyStep<engine::Lanes>{step.forward, step.left, step.turn});
     for (std::size_t lane = 0; lane < engine::kLanesOf<engine::Lanes>; ++lane) {
-      EXPECT_NEAR(get(lanes.before, lane), one.before, 1e-14);
-      EXPECT_NEAR(get(lanes.way, lane), one.way, 1e-14);
-      EXPECT_NEAR(get(lanes.after, lane), one.after, 1e-14);
+      EXPECT_NEAR(get(lanes.rot1, lane), one.rot1, 1e-14);
+      EXPECT_NEAR(get(lanes.trans, lane), one.trans, 1e-14);
+      EXPECT_NEAR(get(lanes.rot2, lane), one.rot2, 1e-14);
     }
   }
 }
@@ -44,7 +44,7 @@ TEST(TurnedWay, IsTheSameInEveryLane) {
 /// Thrun, Burgard, Fox: Probabilistic Robotics, table 5.6.
 TEST(IncrementNoise, OfOdometryHasTheVariancesOfTheBook) {
   const IncrementNoise noise{.model = IncrementModel::odometry, .alpha = {0.1, 0.2, 0.3, 0.4}};
-  const TurnedWay<double> turned{.before = 0.2, .way = 0.5, .after = -0.3};
+  const TurnedWay<double> turned{.rot1 = 0.2, .trans = 0.5, .rot2 = -0.3};
   const auto sigma = increment_deviations(noise, step_of(turned), 0.1);
   EXPECT_NEAR(sigma[0] * sigma[0], 0.1 * 0.04 + 0.2 * 0.25, 1e-15);
   EXPECT_NEAR(sigma[1] * sigma[1], 0.3 * 0.25 + 0.4 * (0.04 + 0.09), 1e-15);
