@@ -78,13 +78,15 @@ TEST_F(MoreRuns, AreResumedAfterTheCopyWasKilled) {
   expect_the_bits_of_one_study("2000");
 }
 
-TEST_F(MoreRuns, ReplaceNoOtherFileThatTookThePlace) {
+TEST_F(MoreRuns, ReplaceNoOtherResultThatTookThePlace) {
   ASSERT_EQ(run("out.h5", "3").code, 0);
   ASSERT_EQ(run("out.h5", "400", {"--resume", "--time-budget", "0.001"}).code, 85);
   std::filesystem::rename(folder_ / "out.h5", folder_ / "first.h5");
-  write("out.h5", "thesis");
+  ASSERT_EQ(run("other.h5", "3", {"--set", "study.seed=5"}).code, 0);
+  std::filesystem::rename(folder_ / "other.h5", folder_ / "out.h5");
+  const std::string other = text_of("out.h5");
   EXPECT_EQ(run("out.h5", "400", {"--resume"}).code, 2);
-  EXPECT_EQ(text_of("out.h5"), "thesis");
+  EXPECT_EQ(text_of("out.h5"), other);
   std::filesystem::rename(folder_ / "first.h5", folder_ / "out.h5");
   EXPECT_EQ(run("out.h5", "400", {"--resume"}).code, 0);
   expect_the_bits_of_one_study("400");
