@@ -91,22 +91,22 @@ def is_submitted(folder):
     return (folder / "logs").is_dir()
 
 
-def claimed(folder):
-    """Indices of shards on which workers of `montecarta work` are, alive or lost."""
+def claims(folder):
+    """{index of a shard: text of the last claim on it by a worker of `montecarta work`}."""
     last = {}
     for path in (folder / "shards").glob("shard_*.h5.claim.*"):
         match = re.fullmatch(r"shard_(\d{4,})\.h5\.claim\.(\d+)", path.name)
         if match:
             index, number = int(match.group(1)), int(match.group(2))
             last[index] = max(last.get(index, (0, path)), (number, path))
-    return {index for index, (_, path) in last.items() if is_at_work(path)}
+    return {index: text_of(path) for index, (_, path) in last.items()}
 
 
-def is_at_work(claim):
+def text_of(claim):
     try:
-        return claim.read_text().startswith("at work")
+        return claim.read_text(errors="replace").strip()
     except OSError:  # removed meanwhile
-        return False
+        return ""
 
 
 Stored = namedtuple("Stored", "state sha256 done failed missing seconds problem")

@@ -138,12 +138,18 @@ MergeSummary merge_results(const fs::path& out, const std::vector<fs::path>& pat
   return summary;
 }
 
-MergeSummary merge_attempt(const fs::path& out, const std::vector<fs::path>& shards) {
+std::optional<MergeSummary> merge_attempt(const fs::path& out,
+                                          const std::vector<fs::path>& shards) {
   const fs::path own = name_of_attempt(out);
-  const MergeSummary summary = merge_results(own, shards, Existing::refuse);
-  PosixFile file(own, PosixFile::Mode::write);
-  complete_attempt(file, out);
-  return summary;
+  try {
+    MergeSummary summary = merge_results(own, shards, Existing::refuse);
+    PosixFile file(own, PosixFile::Mode::write);
+    complete_attempt(file, out);
+    return summary;
+  } catch (const std::runtime_error&) {
+    if (!is_there(out)) throw;
+    return std::nullopt;  // a faster attempt removed the file of this one
+  }
 }
 
 }  // namespace montecarta::engine

@@ -5,6 +5,7 @@
 #include "engine/records/shard.hpp"
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 namespace montecarta::engine {
@@ -18,8 +19,9 @@ MergeSummary merge_results(const std::filesystem::path& out,
                            const std::vector<std::filesystem::path>& shards, Existing existing);
 
 /// The same for several processes that may merge into `out` at once, or be killed: each writes a
-/// file of its own, of which the first complete one gets the name `out`.
-MergeSummary merge_attempt(const std::filesystem::path& out,
-                           const std::vector<std::filesystem::path>& shards);
+/// file of its own, of which the first complete one gets the name `out`. nullopt if this process
+/// could not merge because another one had.
+std::optional<MergeSummary> merge_attempt(const std::filesystem::path& out,
+                                          const std::vector<std::filesystem::path>& shards);
 
 }  // namespace montecarta::engine

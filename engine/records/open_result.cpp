@@ -133,9 +133,20 @@ void require_same(const fs::path& path, const ResultDescription& planned,
                    range(planned) + "): give the same --runs or --shard as at the start");
 }
 
+/// Says in the provenance of unfinished work that its first runs are those of the result that it
+/// replaces.
+constexpr const char* kFirstRuns = "a result that has the first runs";
+
+bool is_extension(const ResultDescription& work) {
+  return std::ranges::find(work.provenance,
+                           std::pair<std::string, std::string>(format::kReplaces, kFirstRuns)) !=
+         work.provenance.end();
+}
+
 bool begun_with_force(const ResultDescription& stored) {
-  return std::ranges::any_of(stored.provenance,
-                             [](const auto& pair) { return pair.first == format::kReplaces; });
+  return !is_extension(stored) && std::ranges::any_of(stored.provenance, [](const auto& pair) {
+    return pair.first == format::kReplaces;
+  });
 }
 
 bool holds_the_same(const fs::path& path, const ResultDescription& planned) {
@@ -147,10 +158,15 @@ bool holds_the_same(const fs::path& path, const ResultDescription& planned) {
   }
 }
 
-/// Throws StudyError if finishing would replace a different file at `path` without --force.
+/// What a result is to a plan of more runs.
+enum class FirstRuns : std::uint8_t { are_there, are_not_there };
+
+/// Throws StudyError if finishing would replace a different file at `path` without --force. An
+/// extension may replace a result that has its first runs.
 void require_replaceable(const fs::path& path, const ResultDescription& planned,
-                         const ResultDescription& begun) {
+                         const ResultDescription& begun, FirstRuns first_runs) {
   if (!is_there(path) || begun_with_force(begun) || holds_the_same(path, planned)) return;
+  if (is_extension(begun) && first_runs == FirstRuns::are_there) return;
   throw StudyError(path.string() + ": exists and is not the result that " + part_of(path).string() +
                    " becomes (finishing would replace it): move it away, then continue with "
                    "--resume, or start afresh with --force");
@@ -240,10 +256,10 @@ OpenResult finished_result(const fs::path& path, const ResultDescription& planne
 
 /// Opens unfinished work that will become `path`, and marks damaged runs as missing.
 OpenResult continued_work(const fs::path& work, const fs::path& path,
-                          const ResultDescription& planned) {
+                          const ResultDescription& planned, FirstRuns first_runs) {
   ResultDescription stored;
   OpenResult result = open_existing(work, PosixFile::Mode::write, planned, stored);
-  require_replaceable(path, planned, stored);
+  require_replaceable(path, planned, stored, first_runs);
   if (is_there(path)) result.existing = Existing::replace;
   const std::size_t torn = reset_torn_runs(result);
   if (torn > 0) {
@@ -278,10 +294,6 @@ std::size_t copy_complete_runs(const PosixFile& from, const ResultSlabs& slabs, 
   }
   return copied;
 }
-
-/// Says in the provenance of unfinished work that its first runs are those of the result that it
-/// replaces.
-constexpr const char* kFirstRuns = "a result that has the first runs";
 
 /// The description of a study if it had as many runs as `stored`.
 ResultDescription with_runs_of(const ResultDescription& stored, ResultDescription planned) {
@@ -338,12 +350,6 @@ OpenResult begin_extension(const fs::path& path, const ResultDescription& stored
   return result;
 }
 
-bool is_extension(const ResultDescription& work) {
-  return std::ranges::find(work.provenance,
-                           std::pair<std::string, std::string>(format::kReplaces, kFirstRuns)) !=
-         work.provenance.end();
-}
-
 }  // namespace
 
 OpenResult resume_result(const fs::path& path, const StudyPlan& plan, const TextPairs& provenance) {
@@ -352,20 +358,25 @@ OpenResult resume_result(const fs::path& path, const StudyPlan& plan, const Text
   const ResultDescription planned = describe(plan, provenance);
   const auto first_runs = first_runs_at(path, plan, planned);
   if (!begun && !first_runs) return finished_result(path, planned);
-  OpenResult result = begun ? continued_work(part_of(path), path, planned)
-                            : begin_extension(path, *first_runs, planned);
+  OpenResult result =
+      begun ? continued_work(part_of(path), path, planned,
+                             first_runs ? FirstRuns::are_there : FirstRuns::are_not_there)
+            : begin_extension(path, *first_runs, planned);
   if (first_runs && is_extension(read_description(part_of(path))))
     take_over(path, *first_runs, result);
   return result;
 }
 
-fs::path name_of_attempt(const fs::path& path) {
+std::string name_of_process() {
   std::array<char, 65> host{};
   ::gethostname(host.data(), host.size() - 1);
+  return std::string(host.data()) + "." + std::to_string(::getpid());
+}
+
+fs::path name_of_attempt(const fs::path& path) {
   const auto now = std::chrono::system_clock::now().time_since_epoch().count();
   fs::path name = part_of(path);
-  return name += "." + std::string(host.data()) + "." + std::to_string(::getpid()) + "." +
-                 std::to_string(now);
+  return name += "." + name_of_process() + "." + std::to_string(now);
 }
 
 namespace {
@@ -437,7 +448,7 @@ OpenResult open_attempt(const fs::path& path, const StudyPlan& plan, const TextP
   if (is_there(path)) return finished_result(path, planned);
   const fs::path own = name_of_attempt(path);
   OpenResult result = take_checkpoint(path, own, planned)
-                          ? continued_work(own, path, planned)
+                          ? continued_work(own, path, planned, FirstRuns::are_not_there)
                           : new_work(own, planned, Existing::refuse);
   result.claim = Claim::attempt;
   for (const fs::path& other : attempts_at(path)) {

@@ -46,6 +46,8 @@ OpenResult resume_result(const std::filesystem::path& path, const StudyPlan& pla
 OpenResult open_attempt(const std::filesystem::path& path, const StudyPlan& plan,
                         const TextPairs& provenance);
 
+/// "HOST.PID", which names this process on all machines.
+std::string name_of_process();
 /// A unique name for the file of one attempt at the result `path`: OUT.h5.part.HOST.PID.TIME.
 std::filesystem::path name_of_attempt(const std::filesystem::path& path);
 /// Leaves an incomplete attempt to a later one, as OUT.h5.part unless that name is taken.

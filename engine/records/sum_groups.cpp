@@ -103,8 +103,9 @@ void write_group(const fs::path& out, const fs::path& rows, std::span<const NewG
   SummedRuns sums{all.runs.front(), all.runs.back() + 1, {}};
   for (const NewGroup& cell : cells) sums.words.push_back(kGroupHeadWords + cell.sums.size());
   const ResultDescription description = with_sums(all, std::move(sums));
+  const fs::path own = name_of_attempt(out);
   write_at_once(
-      out, description,
+      own, description,
       [&](const PosixFile& file, const ResultSlabs& slabs) {
         copy_first_runs(shard, description, file, slabs);
         for (std::size_t c = 0; c < cells.size(); ++c) {
@@ -118,6 +119,7 @@ void write_group(const fs::path& out, const fs::path& rows, std::span<const NewG
         write_seconds(file, slabs, shard.wall_seconds);
       },
       Existing::replace);
+  PosixFile(own, PosixFile::Mode::write).rename(out, Existing::replace);
 }
 
 namespace {

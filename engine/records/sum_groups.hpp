@@ -43,7 +43,7 @@ struct NewGroup {
 };
 
 /// Writes the result of one group: the sums of each cell, and the first runs of the file `rows`,
-/// which has all runs of the group.
+/// which has all runs of the group. Several processes may write it at once.
 void write_group(const std::filesystem::path& out, const std::filesystem::path& rows,
                  std::span<const NewGroup> cells);
 

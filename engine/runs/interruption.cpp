@@ -46,4 +46,9 @@ Interruption::~Interruption() {
 
 int Interruption::signal() const { return received; }
 
+StopReason Interruption::reason() const {
+  if (signal() == 0) return StopReason::complete;
+  return signal() == SIGINT ? StopReason::sigint : StopReason::sigterm;
+}
+
 }  // namespace montecarta::engine

@@ -55,6 +55,8 @@ class Interruption {
 
   /// The signal, SIGINT or SIGTERM; 0 if none was received since construction.
   int signal() const;
+  /// The signal as the reason to stop; StopReason::complete if none was received.
+  StopReason reason() const;
 
  private:
   struct sigaction before_int_ {};

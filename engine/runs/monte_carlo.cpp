@@ -162,6 +162,7 @@ RunOutcome run_study(const StudyPlan& plan, const RunOptions& options) {
   outcome.runs_here = outcome.counts.ended() - before.ended();
   outcome.seconds = stopwatch.seconds();
   close_output(writer, outcome);
+  outcome.signal = interruption.reason();
   return outcome;
 }
 

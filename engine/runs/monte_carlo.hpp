@@ -29,6 +29,8 @@ struct RunOutcome {
   RunCounts counts = {};        ///< runs of all cells, including earlier sessions
   std::uint64_t runs_here = 0;  ///< number of runs that ended in this session
   double seconds = 0.0;         ///< [s] wall time of this session
+  /// Signal (sigterm or sigint) that was received, even if no run was missing any more.
+  StopReason signal = StopReason::complete;
 };
 
 /// Exit code of the program: 0 done, 3 done with some failed runs, 85 stopped at a checkpoint (by

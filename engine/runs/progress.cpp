@@ -151,7 +151,7 @@ void Watch::look() {
     std::fputs("\nmontecarta: stopping; finished runs are kept", stderr);
     std::fputs(runs_under_scheduler() ? "\n" : " (a second signal stops at once)\n", stderr);
   }
-  if (signal != 0) stop_.make(signal == SIGINT ? StopReason::sigint : StopReason::sigterm);
+  if (signal != 0) stop_.make(interruption_.reason());
   if (time_budget_ && stopwatch_.seconds() >= *time_budget_) stop_.make(StopReason::time_budget);
   progress_.show();
 }

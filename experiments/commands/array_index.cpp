@@ -51,6 +51,16 @@ std::string remedy_of(const TaskVariable& variable, std::uint64_t shards) {
   return text;
 }
 
+/// The number of a task does not fit the shards, which the array must have.
+[[noreturn]] void refuse_number(const TaskVariable& variable, const char* name,
+                                std::uint64_t shards) {
+  throw StudyError(std::string(name) + "=" + value_of(name) + ": does not fit --shard auto/" +
+                   std::to_string(shards) + " (tasks are numbered from " +
+                   std::to_string(variable.first) + " to " +
+                   std::to_string(variable.first + shards - 1) + "): start the array with " +
+                   remedy_of(variable, shards) + ", or give --shard I/" + std::to_string(shards));
+}
+
 /// The index of a task by the number that a variable holds. Throws StudyError if an array of
 /// `shards` tasks has no such number.
 std::uint64_t index_of(const TaskVariable& variable, const char* name, std::uint64_t shards) {
@@ -58,11 +68,7 @@ std::uint64_t index_of(const TaskVariable& variable, const char* name, std::uint
   const auto number = to_count(value);
   if (number && *number >= variable.first && *number - variable.first < shards)
     return *number - variable.first;
-  throw StudyError(std::string(name) + "=" + value + ": does not fit --shard auto/" +
-                   std::to_string(shards) + " (tasks are numbered from " +
-                   std::to_string(variable.first) + " to " +
-                   std::to_string(variable.first + shards - 1) + "): start the array with " +
-                   remedy_of(variable, shards));
+  refuse_number(variable, name, shards);
 }
 
 /// The index by a variable; nullopt if this is no task of an array of its scheduler.
@@ -70,8 +76,11 @@ std::optional<std::uint64_t> index_by(const TaskVariable& variable, std::uint64_
   const std::string value = value_of(variable.name);
   if (value.empty() || value == variable.no_array) return std::nullopt;
   const std::uint64_t index = index_of(variable, variable.name, shards);
-  // An array from 1 to N lacks shard 0, which each of its tasks must notice.
-  if (to_count(value_of(variable.last_number))) index_of(variable, variable.last_number, shards);
+  // An array from 1 to N lacks shard 0, and a short one the last shards, which each of its tasks
+  // must notice.
+  const auto last = to_count(value_of(variable.last_number));
+  if (last && *last != variable.first + shards - 1)
+    refuse_number(variable, variable.last_number, shards);
   return index;
 }
 

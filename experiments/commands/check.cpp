@@ -344,6 +344,10 @@ void print_cells(const StudyPlan& plan, const std::vector<TableRow>& rows) {
 int check_command(const Arguments& arguments) {
   const Study study = study_of(arguments);
   const StudyPlan plan = plan_of(study, arguments);
+  if (arguments.has("drives")) {
+    for (const std::string& setting : settings_beside_text(study)) std::cout << setting << "\n";
+    return kDone;
+  }
   if (arguments.has("text")) {
     std::cout << plan.resolved_text;
     return kDone;

@@ -44,6 +44,7 @@ Study recording_everything(Study study, std::size_t cell, std::uint64_t run) {
   study.settings.replace("record", "full_runs", "0");  // there is only one run
   study.settings.replace("record", "rate", "control");
   if (study.logs.size() < 2) return study;
+  study.log_folders = {study.log_folders.at(run)};
   study.logs = {study.logs.at(run)};  // a single drive allows recording every step
   study.settings.replace("scenario", "data_sha256", fingerprint_of(*study.logs.front()));
   return study;

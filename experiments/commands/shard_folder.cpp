@@ -73,6 +73,15 @@ void require_same(const fs::path& folder, const ShardPlan& before, const ShardPl
                    std::to_string(before.shards) + ", or another folder");
 }
 
+/// Throws StudyError if a folder without a plan holds another study.ini than the one of the plan.
+void require_own_study(const fs::path& folder, const std::string& text) {
+  if (text_file(study_in(folder)) == text) return;
+  throw StudyError(study_in(folder).string() +
+                   ": is there without a plan.json and is not the text of this study (a file of "
+                   "yours, or of a worker that was killed): move it away, or choose another "
+                   "folder");
+}
+
 void make_folders(const fs::path& folder) {
   std::error_code failed;
   fs::create_directories(folder / "shards", failed);
@@ -96,6 +105,7 @@ ShardFolder ShardFolder::make(const fs::path& folder, const Study& study, ShardP
   if (!is_there(plan_in(folder))) {
     make_folders(folder);
     write_whole(study_in(folder), text);
+    require_own_study(folder, text);
     write_whole(plan_in(folder), json_text(plan));
   }
   ShardFolder made(folder);

@@ -4,6 +4,7 @@
 #include "analysis/study/stored_sums.hpp"
 #include "engine/errors.hpp"
 #include "engine/records/check_file.hpp"
+#include "engine/records/open_result.hpp"
 #include "engine/records/posix_file.hpp"
 #include "engine/records/result_file.hpp"
 #include "experiments/commands/stored_result.hpp"
@@ -71,16 +72,14 @@ RunCounts counts_in(const fs::path& path) {
   return counts;
 }
 
-/// Runs one group, unless it is finished.
-RunOutcome run_group(const StudyPlan& group, const fs::path& folder, const RunOptions& options,
-                     std::optional<double> time_left) {
+/// Runs one group that is not finished.
+RunOutcome make_group(const StudyPlan& group, const fs::path& folder, const RunOptions& options,
+                      std::optional<double> time_left) {
   const fs::path sums = file_in(folder, "group", group.first_run);
-  if (is_finished(sums, group, options.provenance)) return {};
   RunOptions of_group = options;
   of_group.output = file_in(folder, "rows", group.first_run);
   of_group.force = false;
-  of_group.attempt = false;
-  of_group.resume = true;
+  of_group.resume = !options.attempt;
   of_group.progress = ProgressStyle::none;
   if (time_left) of_group.time_budget = std::max(*time_left, kShortestSitting);
   const RunOutcome outcome = run_study(group, of_group);
@@ -88,6 +87,20 @@ RunOutcome run_group(const StudyPlan& group, const fs::path& folder, const RunOp
   write_group(sums, of_group.output, sums_to_store(ResultFile(of_group.output), options.parallel));
   fs::remove(of_group.output);
   return outcome;
+}
+
+/// Runs one group, unless it is finished. An attempt ends quietly where another one finished the
+/// group, and removed the rows of it, in the meantime.
+RunOutcome run_group(const StudyPlan& group, const fs::path& folder, const RunOptions& options,
+                     std::optional<double> time_left) {
+  const fs::path sums = file_in(folder, "group", group.first_run);
+  if (is_finished(sums, group, options.provenance)) return {};
+  try {
+    return make_group(group, folder, options, time_left);
+  } catch (const std::runtime_error&) {
+    if (!options.attempt || !is_finished(sums, group, options.provenance)) throw;
+    return {};
+  }
 }
 
 void show_progress(const StudyPlan& plan, std::uint64_t done, double seconds,
@@ -109,7 +122,8 @@ bool is_stored_work(const std::string& name) {
 
 /// Removes the runs and groups in the folder, and leaves other files.
 void remove_groups(const fs::path& folder) {
-  for (const auto& entry : fs::directory_iterator(folder)) {
+  std::error_code ignored;  // another attempt may be removing the same
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
     const std::string name = entry.path().filename().string();
     if (is_stored_work(name)) fs::remove(entry.path());
   }
@@ -120,7 +134,8 @@ void remove_work(const fs::path& folder) {
   remove_groups(folder);
   fs::remove(replaces_in(folder));
   fs::remove(lock_in(folder));
-  if (fs::is_empty(folder)) fs::remove(folder);
+  std::error_code not_empty;
+  fs::remove(folder, not_empty);
 }
 
 /// Removes the folder of work that has stored nothing.
@@ -141,8 +156,9 @@ void require_result_of(const StudyPlan& plan, const RunOptions& options) {
                    ": holds other runs than those to be computed: choose another output");
 }
 
-/// Begins or continues the work in the folder, which only one process may do at a time. Returns its
-/// lock, or nullopt if the result is complete already.
+/// Begins or continues the work in the folder, which only one process may do at a time, or several
+/// attempts. Returns its lock, which attempts do not hold, or nullopt if the result is complete
+/// already.
 std::optional<PosixFile> open_work(const fs::path& folder, const StudyPlan& plan,
                                    const RunOptions& options) {
   const bool goes_on = options.resume || options.attempt, has_work = is_there(folder);
@@ -158,7 +174,7 @@ std::optional<PosixFile> open_work(const fs::path& folder, const StudyPlan& plan
   if (!options.force && !is_there(replaces_in(folder))) require_free(options.output);
   fs::create_directory(folder);
   PosixFile lock(lock_in(folder), PosixFile::Mode::create);
-  lock.lock();
+  if (!options.attempt) lock.lock();
   if (options.force) {
     remove_groups(folder);
     PosixFile(replaces_in(folder), PosixFile::Mode::create);
@@ -191,6 +207,21 @@ std::vector<fs::path> begun_files(const fs::path& output) {
 
 namespace {
 
+/// Makes the result of its groups. An attempt writes a file of its own, as other attempts may do.
+void join_groups(const StudyPlan& plan, const RunOptions& options,
+                 const std::vector<fs::path>& groups) {
+  const bool replaces = is_there(replaces_in(groups_of(options.output)));
+  if (!options.attempt || replaces) {
+    merge_groups(options.output, groups, plan.first_run, plan.last_run,
+                 replaces ? Existing::replace : Existing::refuse);
+    return;
+  }
+  const fs::path own = name_of_attempt(options.output);
+  merge_groups(own, groups, plan.first_run, plan.last_run, Existing::refuse);
+  PosixFile file(own, PosixFile::Mode::write);
+  complete_attempt(file, options.output);
+}
+
 /// Runs all groups and makes the result of them.
 RunOutcome run_groups(const StudyPlan& plan, const RunOptions& options, const fs::path& folder) {
   const Stopwatch stopwatch;
@@ -201,7 +232,10 @@ RunOutcome run_groups(const StudyPlan& plan, const RunOptions& options, const fs
     std::optional<double> left = options.time_budget;
     if (left) *left -= stopwatch.seconds();
     const RunOutcome part = run_group(group, folder, options, left);
-    outcome.stopped = part.stopped;
+    outcome.signal = part.signal;
+    outcome.stopped = group.last_run < plan.last_run && part.stopped == StopReason::complete
+                          ? part.signal
+                          : part.stopped;
     outcome.runs_here += part.runs_here;
     if (outcome.stopped != StopReason::complete) {
       outcome.counts.missing =
@@ -213,29 +247,43 @@ RunOutcome run_groups(const StudyPlan& plan, const RunOptions& options, const fs
   }
   outcome.seconds = stopwatch.seconds();
   if (outcome.stopped != StopReason::complete) return outcome;
-  merge_groups(options.output, groups, plan.first_run, plan.last_run,
-               is_there(replaces_in(folder)) ? Existing::replace : Existing::refuse);
+  join_groups(plan, options, groups);
   remove_work(folder);
   outcome.counts = counts_in(options.output);
   return outcome;
+}
+
+/// The outcome of a study that is complete already.
+RunOutcome finished_outcome(const RunOptions& options) {
+  RunOutcome outcome;
+  outcome.counts = counts_in(options.output);
+  return outcome;
+}
+
+RunOutcome run_or_continue(const StudyPlan& plan, const RunOptions& options,
+                           const fs::path& folder) {
+  const std::optional<PosixFile> lock = open_work(folder, plan, options);
+  if (!lock) return finished_outcome(options);
+  try {
+    return run_groups(plan, options, folder);
+  } catch (...) {
+    if (!options.attempt) remove_empty_work(folder);
+    throw;
+  }
 }
 
 }  // namespace
 
 RunOutcome run_summed_study(const StudyPlan& plan, const RunOptions& options) {
   const fs::path folder = groups_of(options.output);
-  const std::optional<PosixFile> lock = open_work(folder, plan, options);
-  if (!lock) {
-    RunOutcome outcome;
-    outcome.counts = counts_in(options.output);
-    return outcome;
-  }
   try {
-    return run_groups(plan, options, folder);
-  } catch (...) {
-    remove_empty_work(folder);
-    throw;
+    return run_or_continue(plan, options, folder);
+  } catch (const std::runtime_error&) {
+    if (!options.attempt || !is_there(options.output)) throw;
   }
+  require_result_of(plan, options);  // another attempt finished it, and removed the groups
+  remove_work(folder);
+  return finished_outcome(options);
 }
 
 std::vector<NewGroup> computed_group(const StudyPlan& plan, std::uint64_t first_run,

@@ -39,18 +39,6 @@ struct Worker {
   }
 };
 
-/// The values of --set that the resolved study does not contain: the path of a recorded drive.
-std::vector<std::string> settings_to_keep(const Arguments& arguments) {
-  std::vector<std::string> kept;
-  for (const std::string& setting : arguments.texts("set")) {
-    const std::size_t sign = std::min(setting.find('='), setting.size() - 1);
-    if (trimmed(setting.substr(0, sign)) != "scenario.path") continue;
-    const fs::path path = trimmed(setting.substr(sign + 1));
-    kept.push_back("scenario.path=" + fs::absolute(path).string());
-  }
-  return kept;
-}
-
 /// Throws StudyError unless the runs of a study can be divided into so many shards.
 void require_shards(const Study& study, std::uint64_t shards) {
   const bool in_groups = study.settings.lists("record", "columns", "sums");
@@ -89,7 +77,7 @@ ShardFolder folder_of(const Arguments& arguments) {
                             .cells = plan.cells.size(),
                             .shards = *shards,
                             .program = fs::read_symlink("/proc/self/exe").string(),
-                            .settings = settings_to_keep(arguments)});
+                            .settings = settings_beside_text(study)});
 }
 
 RunOptions options_of(const Worker& worker, const fs::path& shard) {
@@ -113,7 +101,7 @@ int compute(const Worker& worker, WorkClaim& claim) {
   const StudyPlan plan = plan_of_shard(worker.study, index, worker.folder.plan().shards,
                                        programs_of(worker.study, worker.arguments));
   const RunOptions options = options_of(worker, claim.file());
-  const RunOutcome outcome =
+  RunOutcome outcome =
       plan.columns.sums ? run_summed_study(plan, options) : run_study(plan, options);
   const std::string name =
       "shard " + std::to_string(index) + " of " + std::to_string(worker.folder.plan().shards);
@@ -127,12 +115,16 @@ int compute(const Worker& worker, WorkClaim& claim) {
              (outcome.counts.failed == 0 ? ""
                                          : ", " + std::to_string(outcome.counts.failed) +
                                                " failed, which are results too"));
-  return kDone;
+  if (outcome.signal == StopReason::complete) return kDone;
+  worker.say("stopped by a signal; any worker continues");
+  outcome.stopped = outcome.signal;
+  return exit_code(outcome, runs_under_scheduler());
 }
 
 void merge_shards(const Worker& worker) {
-  const MergeSummary summary = merge_attempt(worker.folder.result(), worker.folder.shards());
-  for (const std::string& note : summary.notes) worker.say(note);
+  const auto summary = merge_attempt(worker.folder.result(), worker.folder.shards());
+  if (!summary) return worker.say("another worker has merged the shards");
+  for (const std::string& note : summary->notes) worker.say(note);
   worker.say(std::to_string(worker.folder.plan().shards) + " shards merged to " +
              worker.folder.result().string());
 }
@@ -158,12 +150,19 @@ int make_claimed(const Worker& worker, std::unique_ptr<WorkClaim> claim) {
         code = compute(worker, *claim);
       }
     }
+  } catch (const StudyError& error) {
+    if (file == worker.folder.result()) {
+      claim->leave();  // a damaged shard, which the message names, is no loss of a worker
+    } else {
+      claim->fail(error.what());
+    }
+    throw;
   } catch (const std::exception& error) {
     claim->fail(error.what());
     throw;
   }
   claim.reset();
-  if (code == kDone) remove_claims(file);
+  if (is_there(file)) remove_claims(file);
   return code;
 }
 

@@ -2,11 +2,11 @@
 #include "experiments/commands/work_claim.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/records/open_result.hpp"
 #include "engine/records/posix_file.hpp"
 #include "engine/runs/progress.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
@@ -34,13 +34,6 @@ fs::path claim_file(fs::path file, std::uint64_t number) {
 std::string text_in(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};
-}
-
-/// "HOST PID", which names this process on all machines.
-std::string name_of_worker() {
-  std::array<char, 65> host{};
-  ::gethostname(host.data(), host.size() - 1);
-  return std::string(host.data()) + " " + std::to_string(::getpid());
 }
 
 /// Replaces the text of a file that is there. A failure only makes this worker look dead.
@@ -99,7 +92,7 @@ WorkClaim::WorkClaim(fs::path file, fs::path claim, double patience)
 WorkClaim::~WorkClaim() { stop(); }
 
 void WorkClaim::keep_alive(double period) {
-  const std::string me = name_of_worker();
+  const std::string me = name_of_process();
   std::unique_lock lock(mutex_);
   for (std::uint64_t sign = 1; !over_; ++sign) {
     replace_text(claim_, "at work: " + me + " " + std::to_string(sign) + "\n");
@@ -118,12 +111,13 @@ void WorkClaim::stop() {
 
 void WorkClaim::leave() {
   stop();
-  replace_text(claim_, std::string(kLeftText) + " by " + name_of_worker() + "\n");
+  replace_text(claim_, std::string(kLeftText) + " by " + name_of_process() + "\n");
 }
 
 void WorkClaim::fail(const std::string& reason) {
   stop();
-  replace_text(claim_, std::string(kFailedText) + " on " + name_of_worker() + ": " + reason + "\n");
+  replace_text(claim_,
+               std::string(kFailedText) + " on " + name_of_process() + ": " + reason + "\n");
 }
 
 namespace {
@@ -165,7 +159,7 @@ std::unique_ptr<WorkClaim> look(std::vector<Watched>& files, bool is_end, double
 
 std::unique_ptr<WorkClaim> claim_free(const std::vector<fs::path>& files, double patience) {
   // Workers that start at the same time begin at different files.
-  const std::size_t first = std::hash<std::string>()(name_of_worker()) % files.size();
+  const std::size_t first = std::hash<std::string>()(name_of_process()) % files.size();
   for (std::size_t i = 0; i < files.size(); ++i) {
     const fs::path& file = files[(first + i) % files.size()];
     const ClaimState state = claims_on(file);

@@ -14,8 +14,8 @@
 
 namespace montecarta::experiments {
 
-/// What the claims on a file say, which a worker makes. The K-th claim on FILE is FILE.claim.K,
-/// whose text its worker changes again and again while it works.
+/// The state of a file by the claims of workers on it. The K-th claim on FILE is the file
+/// FILE.claim.K. While its worker lives, it changes the text of the claim again and again.
 struct ClaimState {
   std::uint64_t claims = 0;  ///< number of the last claim; 0: nobody has claimed the file
   /// Number of claims before the last one whose worker was lost or failed.

@@ -80,12 +80,11 @@ void refuse_drive_again(const Settings& settings, const std::vector<std::string>
 
 }  // namespace
 
-std::vector<std::shared_ptr<const DriveLog>> read_drives_of(Settings& settings,
-                                                            const fs::path& study_folder) {
+RecordedDrives read_drives_of(Settings& settings, const fs::path& study_folder) {
   const std::vector<std::string> paths = paths_in(settings, study_folder);
   require_runs_to_fit(settings, paths.size());
   const std::vector<std::string> expected = expected_fingerprints(settings, paths.size());
-  std::vector<std::shared_ptr<const DriveLog>> logs;
+  RecordedDrives drives;
   std::vector<std::string> fingerprints;
   for (std::size_t k = 0; k < paths.size(); ++k) {
     const fs::path folder = at_place(settings.place(kScenario, "path"),
@@ -94,12 +93,13 @@ std::vector<std::shared_ptr<const DriveLog>> read_drives_of(Settings& settings,
     fingerprints.push_back(fingerprint_of(log));
     require_same_drive(settings, expected[k], fingerprints.back(), folder);
     require_reference(settings, log);
-    logs.push_back(std::make_shared<const DriveLog>(std::move(log)));
+    drives.logs.push_back(std::make_shared<const DriveLog>(std::move(log)));
+    drives.folders.push_back(fs::absolute(folder));
   }
   refuse_drive_again(settings, paths, fingerprints);
   settings.replace(kScenario, "data_sha256", joined(fingerprints));
   settings.replace(kScenario, "path", "log");
-  return logs;
+  return drives;
 }
 
 std::size_t identities_in(const DriveLog& log) {

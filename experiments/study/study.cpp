@@ -163,13 +163,16 @@ Study parse_study(const std::string& text, const std::string& name,
   const Settings settings(ini.entries, name);
   const bool controls_are_measured = settings.scenario_kind() == "simulated" &&
                                      settings.text("scenario", "noise") == "measured-control";
-  Study study{settings, read_cells(ini.entries, name, filters, controls_are_measured), {}, {}, {}};
+  Study study{settings, read_cells(ini.entries, name, filters, controls_are_measured), {}, {}, {},
+              {}};
   if (study.settings.scenario_kind() == "simulated") {
     study.world = world_of(ini, study.settings, folder);
     study.settings.replace("scenario", "world", study.world.name);
   } else {
     refuse_world(ini, study.settings);
-    study.logs = read_drives_of(study.settings, folder);
+    RecordedDrives drives = read_drives_of(study.settings, folder);
+    study.logs = std::move(drives.logs);
+    study.log_folders = std::move(drives.folders);
     const bool is_given = study.settings.place("association", "kind") != name;
     if (!is_given && identities_of(study) > 0)
       study.settings.replace("association", "kind", "known");
@@ -228,6 +231,13 @@ std::string resolved_text(const Study& study) {
     }
   }
   return text;
+}
+
+std::vector<std::string> settings_beside_text(const Study& study) {
+  if (study.log_folders.empty()) return {};
+  std::vector<std::string> paths;
+  for (const std::filesystem::path& folder : study.log_folders) paths.push_back(folder.string());
+  return {"scenario.path=" + joined(paths)};
 }
 
 }  // namespace montecarta::experiments

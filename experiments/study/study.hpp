@@ -25,6 +25,7 @@ struct Study {
   World world;  ///< world of a simulation
   /// Recorded drives: one for all runs, or one for each run; empty in a simulation.
   std::vector<std::shared_ptr<const DriveLog>> logs;
+  std::vector<std::filesystem::path> log_folders;  ///< {log} absolute path of its folder
   std::optional<StoppingRule> until;  ///< rule by which a cell stops early; nullopt: never
 };
 
@@ -55,5 +56,9 @@ std::vector<std::pair<std::string, std::string>> stated_settings(const Settings&
 /// spelling. Reading it gives the same study and the same text, so its SHA-256 identifies the
 /// study.
 std::string resolved_text(const Study& study);
+
+/// The settings, as given to --set, that the resolved text does not contain: the folders of
+/// recorded drives, as absolute paths.
+std::vector<std::string> settings_beside_text(const Study& study);
 
 }  // namespace montecarta::experiments

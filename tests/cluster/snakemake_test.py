@@ -74,6 +74,8 @@ class Snakemake(unittest.TestCase):
 
     def test_what_is_missing_is_named(self):
         self.assertIn("shards is missing", self.snakemake("study=study.ini", code=1))
+        absent = self.snakemake("study=study.ini", "shards=3", "program=./absent", code=1)
+        self.assertIn("./absent: not found: build montecarta", absent)
 
 
 if __name__ == "__main__":

@@ -77,6 +77,14 @@ TEST_F(Merge, TakesTheWholeRunsOfUnfinishedWork) {
   EXPECT_THAT(refusal({a, folder_ / "b.h5.part"}), HasSubstr("runs 4:5"));
 }
 
+TEST_F(Merge, IsLeftToAnotherProcessThatWasFaster) {
+  const auto a = shard("a.h5", 0, 5);
+  const auto removed = folder_ / "a.h5.part.of.faster";
+  EXPECT_THROW(merge_attempt(path_, {removed}), std::runtime_error);
+  EXPECT_TRUE(merge_attempt(path_, {a}));
+  EXPECT_FALSE(merge_attempt(path_, {removed}));
+}
+
 TEST_F(Merge, RefusesMissingShardsAndItsOwnOutput) {
   EXPECT_THAT(refusal({folder_ / "nothing.h5"}), HasSubstr("nothing.h5"));
   const auto a = shard("a.h5", 0, 5);

@@ -117,6 +117,21 @@ TEST_F(MonteCarlo, GivesTheSameBitsInterruptedAndResumed) {
   }
 }
 
+/// Sends a signal when the only run begins, which may end before anybody has seen the signal.
+TEST_F(MonteCarlo, ReportsASignalEvenIfNoRunIsMissing) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    StudyPlan plan = scripted_study(3, 2);
+    const auto pending = std::make_shared<std::atomic<int>>(signal);
+    plan.cells = {scripted_cell("small", {.particles = 5})};
+    plan.cells[0].make_filter = [=] {
+      return std::make_unique<SignallingFilter>(ScriptedFilter::Script{.particles = 5}, pending);
+    };
+    const RunOutcome outcome = run_study(plan, options("signalled" + std::to_string(signal)));
+    EXPECT_EQ(outcome.signal, signal == SIGINT ? StopReason::sigint : StopReason::sigterm);
+  }
+  EXPECT_EQ(run_study(scripted_cells(2), options("quiet")).signal, StopReason::complete);
+}
+
 TEST_F(MonteCarlo, StopsAtTheTimeBudgetAndGoesOnLater) {
   StudyPlan plan = scripted_study(12, 40);
   plan.cells = {scripted_cell("slow", {.pace = std::chrono::milliseconds(5)})};

@@ -79,6 +79,12 @@ TEST_F(ArrayTask, IsRefusedIfTheArrayLacksTheFirstShard) {
   EXPECT_EQ(shard_with({{"SGE_TASK_ID", "2"}, {"SGE_TASK_LAST", "4"}}), "1/4");
 }
 
+TEST_F(ArrayTask, IsRefusedIfTheArrayLacksTheLastShard) {
+  EXPECT_THAT(shard_with({{"SLURM_ARRAY_TASK_ID", "2"}, {"SLURM_ARRAY_TASK_MAX", "2"}}),
+              AllOf(HasSubstr("SLURM_ARRAY_TASK_MAX=2"), HasSubstr("--array=0-3")));
+  EXPECT_THAT(shard_with({{"SGE_TASK_ID", "2"}, {"SGE_TASK_LAST", "3"}}), HasSubstr("-t 1-4"));
+}
+
 TEST_F(ArrayTask, OfTwoSchedulersIsRefusedIfTheyDisagree) {
   EXPECT_THAT(shard_with({{"SLURM_ARRAY_TASK_ID", "2"}, {"SGE_TASK_ID", "2"}}),
               AllOf(HasSubstr("SLURM_ARRAY_TASK_ID=2"), HasSubstr("SGE_TASK_ID=2")));

@@ -63,6 +63,18 @@ class Program : public testing::Test {
     return called;
   }
 
+  /// Calls the program and kills it with -9 as soon as a file of this pattern is there. Returns
+  /// whether it was killed, and did not end before.
+  bool is_killed_at(const std::string& pattern, const std::vector<std::string>& words) const {
+    std::string line =
+        "cd " + shell_quoted(folder_.string()) + "\n" + shell_quoted(program_under_test());
+    for (const std::string& word : words) line.append(" ").append(shell_quoted(word));
+    line += " >killed.out 2>&1 &\nwhile kill -0 $! 2>/dev/null && ! compgen -G '" + pattern +
+            "' >/dev/null; do :; done\nkill -9 $! 2>/dev/null\nwait $! 2>/dev/null\n"
+            "[ $? -eq 137 ]";
+    return std::system(("bash -c " + shell_quoted(line)).c_str()) == 0;
+  }
+
   /// The same with more words behind.
   Called call_with(std::vector<std::string> words, const std::vector<std::string>& more) const {
     words.insert(words.end(), more.begin(), more.end());
