@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 constexpr double kPatience = 60.0;
 
 /// What one worker does, and in which folder.
-struct Worker {
+struct ShardWorker {
   const Arguments& arguments;
   ShardFolder folder;
   Study study;
@@ -80,7 +80,7 @@ ShardFolder folder_of(const Arguments& arguments) {
                             .settings = settings_beside_text(study)});
 }
 
-RunOptions options_of(const Worker& worker, const fs::path& shard) {
+RunOptions options_of(const ShardWorker& worker, const fs::path& shard) {
   const Arguments& arguments = worker.arguments;
   RunOptions options;
   options.output = shard;
@@ -96,7 +96,7 @@ RunOptions options_of(const Worker& worker, const fs::path& shard) {
 }
 
 /// Computes a shard. Returns 0, or the exit code of a process that was stopped at a checkpoint.
-int compute(const Worker& worker, WorkClaim& claim) {
+int compute(const ShardWorker& worker, WorkClaim& claim) {
   const std::uint64_t index = worker.folder.index_of(claim.file());
   const StudyPlan plan = plan_of_shard(worker.study, index, worker.folder.plan().shards,
                                        programs_of(worker.study, worker.arguments));
@@ -121,7 +121,7 @@ int compute(const Worker& worker, WorkClaim& claim) {
   return exit_code(outcome, runs_under_scheduler());
 }
 
-void merge_shards(const Worker& worker) {
+void merge_shards(const ShardWorker& worker) {
   const auto summary = merge_attempt(worker.folder.result(), worker.folder.shards());
   if (!summary) return worker.say("another worker has merged the shards");
   for (const std::string& note : summary->notes) worker.say(note);
@@ -130,7 +130,7 @@ void merge_shards(const Worker& worker) {
 }
 
 /// Claims one of the missing files, or finds why there is none to claim.
-ClaimSearch claim_one(const Worker& worker, const std::vector<fs::path>& missing) {
+ClaimSearch claim_one(const ShardWorker& worker, const std::vector<fs::path>& missing) {
   const double patience = worker.patience();
   if (auto claim = claim_free(missing, patience)) return {std::move(claim), {}};
   worker.say("no shard is free; looking for at most " + duration_text(patience) +
@@ -139,7 +139,7 @@ ClaimSearch claim_one(const Worker& worker, const std::vector<fs::path>& missing
 }
 
 /// Makes a file that is claimed, and removes the claims on it. Returns as compute() does.
-int make_claimed(const Worker& worker, std::unique_ptr<WorkClaim> claim) {
+int make_claimed(const ShardWorker& worker, std::unique_ptr<WorkClaim> claim) {
   const fs::path file = claim->file();
   int code = kDone;
   try {
@@ -188,7 +188,7 @@ bool is_further(const ShardFolder& folder, const std::vector<fs::path>& before) 
 int work_command(const Arguments& arguments) {
   ShardFolder folder = folder_of(arguments);
   Study study = folder.study();
-  const Worker worker{arguments, std::move(folder), std::move(study)};
+  const ShardWorker worker{arguments, std::move(folder), std::move(study)};
   programs_of(worker.study, arguments);
   const fs::path result = worker.folder.result();
   bool has_merged = false;

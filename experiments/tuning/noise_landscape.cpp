@@ -68,10 +68,10 @@ std::size_t NoiseLandscape::first_scan_of(std::uint64_t run) const {
 }
 
 void NoiseLandscape::compute(std::span<const LatticePoint> points, std::uint64_t runs) {
-  std::vector<Point*> lacking;
+  std::vector<ScoredPoint*> lacking;
   std::vector<CellSpec> cells;
   for (const LatticePoint& where : points) {
-    Point& point = points_[where];
+    ScoredPoint& point = points_[where];
     if (point.runs(parts_of_run_) >= runs) continue;
     if (std::ranges::count(lacking, &point) > 0) continue;
     lacking.push_back(&point);
@@ -124,7 +124,7 @@ void NoiseLandscape::score(const Work& work, std::uint64_t run, const Drive& dri
 
 double NoiseLandscape::mean(const LatticePoint& where, std::uint64_t runs,
                             const Intervals& intervals) const {
-  const Point& point = points_.at(where);
+  const ScoredPoint& point = points_.at(where);
   ScoreSum all;
   for (const std::size_t interval : intervals) {
     for (std::size_t part = 0; part < runs * parts_of_run_; ++part)

@@ -66,14 +66,14 @@ class NoiseLandscape {
 
  private:
   /// The scores of a point.
-  struct Point {
+  struct ScoredPoint {
     std::vector<PartScores> parts;
     std::vector<std::uint8_t> has_failed;  ///< {run, interval}
     std::uint64_t runs(std::size_t parts_of_run) const { return parts.size() / parts_of_run; }
   };
   /// A point whose runs from `first_run` on are computed.
   struct Work {
-    Point* point;
+    ScoredPoint* point;
     std::uint64_t first_run;
     const Cell* cell;
     InnovationScore innovation_score;
@@ -91,7 +91,7 @@ class NoiseLandscape {
   std::uint64_t runs_;
   std::size_t parts_of_run_;
   Intervals intervals_;
-  std::map<LatticePoint, Point> points_;
+  std::map<LatticePoint, ScoredPoint> points_;
 };
 
 }  // namespace montecarta::experiments
