@@ -59,7 +59,8 @@ std::vector<std::string> imported_notes(const StudyAnalysis& study) {
   if (study.imported.adds_truth_covariance)
     notes.push_back(prose("components", "truth covariance"));
   for (const CellAnalysis& cell : study.cells) {
-    const std::string hint = in_words(cell.get<ConventionHint>(), cell.label, convention);
+    const std::string hint =
+        in_words(cell.get<ConventionHint>(), cell.label, convention, cell.verdict.has_finding());
     if (!hint.empty()) notes.push_back(prose("components", "hint", {{"hint", hint}}));
   }
   for (const CellAnalysis& cell : study.cells) {

@@ -110,7 +110,8 @@ ConventionHint ConventionHints::result(std::span<const double> times, double lev
   return hint;
 }
 
-std::string in_words(const ConventionHint& hint, const std::string& cell, const std::string& said) {
+std::string in_words(const ConventionHint& hint, const std::string& cell, const std::string& said,
+                     bool is_refuted) {
   std::vector<std::string> fitting, others;
   bool said_fits = false;
   for (std::size_t k = 0; k < hint.by_convention.size(); ++k) {
@@ -124,6 +125,7 @@ std::string in_words(const ConventionHint& hint, const std::string& cell, const 
       (fits_errors(found) ? fitting : others).push_back(with_ratio(name, found));
     }
   }
+  if (said_fits && is_refuted) return "";
   const std::string mistakes = said_fits ? "" : mistakes_in_words(hint);
   if (fitting.empty() && others.empty() && mistakes.empty()) return "";
   std::string words = cell + ": the verdict is by the error " + said + ". ";

@@ -68,7 +68,9 @@ class ConventionHints {
 
 /// A text that names the conventions other than `said` that fit the covariances of `cell`, those
 /// that do not, and the mistakes that would explain errors that do not fit. Empty if nothing was
-/// tested.
-std::string in_words(const ConventionHint& hint, const std::string& cell, const std::string& said);
+/// tested, and if only the verdict, which has more tests, refutes the stated convention
+/// (`is_refuted`): then what the hint does not reject may be refuted likewise.
+std::string in_words(const ConventionHint& hint, const std::string& cell, const std::string& said,
+                     bool is_refuted);
 
 }  // namespace montecarta::analysis

@@ -272,11 +272,12 @@ std::string name_of(Answer answer) {
   return kNames.at(static_cast<std::size_t>(answer));
 }
 
-bool Verdict::is_slight() const {
-  const bool is_off = answer == Answer::optimistic || answer == Answer::conservative ||
-                      answer == Answer::inconsistent;
-  return is_off && !is_refused && beside.exact.empty();
+bool Verdict::has_finding() const {
+  return answer == Answer::optimistic || answer == Answer::conservative ||
+         answer == Answer::inconsistent;
 }
+
+bool Verdict::is_slight() const { return has_finding() && !is_refused && beside.exact.empty(); }
 
 std::string answer_in_words(const Verdict& verdict) {
   return (verdict.is_slight() ? "slightly " : "") + name_of(verdict.answer);

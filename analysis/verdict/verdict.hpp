@@ -170,6 +170,8 @@ struct Verdict {
   /// nothing is shown to be consistent, and correlations and spreads say nothing.
   bool is_by_upper_bounds = false;
 
+  /// Whether something is shown to be off: neither consistent nor undecided nor untested.
+  bool has_finding() const;
   /// Whether the filter is off, and by nothing that is shown to be beyond the margin.
   bool is_slight() const;
   /// The tests of a family; nullptr if it does not apply.

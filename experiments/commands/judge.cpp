@@ -92,7 +92,7 @@ OwnTruth own_truth_of(const std::string& estimates, const std::vector<std::strin
     throw StudyError(
         "judge: --truth PATH... is missing (an error is estimate minus truth): name "
         "the true states, give the estimates columns true_x_m, ... beside x_m, ..., "
-        "or columns error_x_m, ... instead of them");
+        "or columns error_x_m, ... instead of them; if these are innovations, say --innovations");
   }
   if (truths.empty() || found == OwnTruth::none) return found;
   throw StudyError("--truth: not beside " + estimates + " (its columns begin with " +

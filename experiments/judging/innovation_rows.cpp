@@ -63,7 +63,7 @@ double without_gate(const CsvRows& file, double nis, std::uint32_t dof,
 class InnovationsOfRows {
  public:
   InnovationsOfRows(std::size_t rows, const StateShape& shape)
-      : shape_(shape), count_(rows), sum_(rows), covariance_(rows) {
+      : shape_(shape), count_(rows), line_(rows), sum_(rows), covariance_(rows) {
     shape_.kind = StateKind::vector;
     shape_.wraps = false;
     shape_.columns = shape_.components;
@@ -73,6 +73,7 @@ class InnovationsOfRows {
     const Eigen::VectorXd one = factor * state_in(file, fields.state, fields.shape);
     const Eigen::MatrixXd P = covariance_in(file, fields);
     if (count_[k]++ == 0) {
+      line_[k] = file.line();
       sum_[k] = one;
       covariance_[k] = P;
     } else {
@@ -86,7 +87,7 @@ class InnovationsOfRows {
     for (std::size_t k = 0; k < count_.size(); ++k) {
       if (count_[k] == 0.0) continue;
       kept.time.push_back(rows.time[k]);
-      kept.line.push_back(rows.line[k]);
+      kept.line.push_back(line_[k]);
       kept.nis.push_back(rows.nis[k]);
       kept.nis_dof.push_back(rows.nis_dof[k]);
       kept.state.emplace_back(sum_[k] / std::sqrt(count_[k]));
@@ -99,7 +100,8 @@ class InnovationsOfRows {
 
  private:
   StateShape shape_;
-  std::vector<double> count_;  ///< {row}
+  std::vector<double> count_;        ///< {row}
+  std::vector<std::uint64_t> line_;  ///< {row} line of its first innovation
   std::vector<Eigen::VectorXd> sum_;
   std::vector<Eigen::MatrixXd> covariance_;
 };

@@ -387,6 +387,11 @@ def _beside(states: _States, d: int, covariances: ArrayLike, times: ArrayLike | 
     return beside
 
 
+def comma_joined(names: str | Sequence[str]) -> str:
+    """The names as one text with commas, which a text is already."""
+    return names if isinstance(names, str) else ",".join(map(str, names))
+
+
 def _judge(arrays: dict[str, NDArray[Any]], names: str | Sequence[str] | None,
            components: Sequence[str] | None, within: float,
            path: str | os.PathLike[str] | None, options: list[str]) -> Judgement:
@@ -396,7 +401,7 @@ def _judge(arrays: dict[str, NDArray[Any]], names: str | Sequence[str] | None,
         raise ImportError("judging arrays needs h5py: install python3-h5py (Debian), or h5py by "
                           "pip") from missing
     if components is not None:
-        options += ["--components", ",".join(components)]
+        options += ["--components", comma_joined(components)]
     folder = tempfile.mkdtemp(prefix="montecarta-")
     try:
         given = os.path.join(folder, "estimates.h5")
@@ -405,7 +410,7 @@ def _judge(arrays: dict[str, NDArray[Any]], names: str | Sequence[str] | None,
             for name, values in arrays.items():
                 _write(file, name, values)
             if names is not None:
-                file.attrs["names"] = names if isinstance(names, str) else ",".join(map(str, names))
+                file.attrs["names"] = comma_joined(names)
         try:
             done = call("judge", given, "-o", result, "--force", "--cell", "estimator", "--within",
                         str(within), *options)
