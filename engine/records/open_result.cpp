@@ -158,15 +158,15 @@ bool holds_the_same(const fs::path& path, const ResultDescription& planned) {
   }
 }
 
-/// What a result is to a plan of more runs.
-enum class FirstRuns : std::uint8_t { are_there, are_not_there };
+/// Whether an older result has the first runs of a plan.
+enum class OlderResult : std::uint8_t { has_first_runs, is_another };
 
 /// Throws StudyError if finishing would replace a different file at `path` without --force. An
 /// extension may replace a result that has its first runs.
 void require_replaceable(const fs::path& path, const ResultDescription& planned,
-                         const ResultDescription& begun, FirstRuns first_runs) {
+                         const ResultDescription& begun, OlderResult older) {
   if (!is_there(path) || begun_with_force(begun) || holds_the_same(path, planned)) return;
-  if (is_extension(begun) && first_runs == FirstRuns::are_there) return;
+  if (is_extension(begun) && older == OlderResult::has_first_runs) return;
   throw StudyError(path.string() + ": exists and is not the result that " + part_of(path).string() +
                    " becomes (finishing would replace it): move it away, then continue with "
                    "--resume, or start afresh with --force");
@@ -256,10 +256,10 @@ OpenResult finished_result(const fs::path& path, const ResultDescription& planne
 
 /// Opens unfinished work that will become `path`, and marks damaged runs as missing.
 OpenResult continued_work(const fs::path& work, const fs::path& path,
-                          const ResultDescription& planned, FirstRuns first_runs) {
+                          const ResultDescription& planned, OlderResult older) {
   ResultDescription stored;
   OpenResult result = open_existing(work, PosixFile::Mode::write, planned, stored);
-  require_replaceable(path, planned, stored, first_runs);
+  require_replaceable(path, planned, stored, older);
   if (is_there(path)) result.existing = Existing::replace;
   const std::size_t torn = reset_torn_runs(result);
   if (torn > 0) {
@@ -360,7 +360,7 @@ OpenResult resume_result(const fs::path& path, const StudyPlan& plan, const Text
   if (!begun && !first_runs) return finished_result(path, planned);
   OpenResult result =
       begun ? continued_work(part_of(path), path, planned,
-                             first_runs ? FirstRuns::are_there : FirstRuns::are_not_there)
+                             first_runs ? OlderResult::has_first_runs : OlderResult::is_another)
             : begin_extension(path, *first_runs, planned);
   if (first_runs && is_extension(read_description(part_of(path))))
     take_over(path, *first_runs, result);
@@ -448,7 +448,7 @@ OpenResult open_attempt(const fs::path& path, const StudyPlan& plan, const TextP
   if (is_there(path)) return finished_result(path, planned);
   const fs::path own = name_of_attempt(path);
   OpenResult result = take_checkpoint(path, own, planned)
-                          ? continued_work(own, path, planned, FirstRuns::are_not_there)
+                          ? continued_work(own, path, planned, OlderResult::is_another)
                           : new_work(own, planned, Existing::refuse);
   result.claim = Claim::attempt;
   for (const fs::path& other : attempts_at(path)) {

@@ -89,17 +89,23 @@ RunOutcome make_group(const StudyPlan& group, const fs::path& folder, const RunO
   return outcome;
 }
 
-/// Runs one group, unless it is finished. An attempt ends quietly where another one finished the
-/// group, and removed the rows of it, in the meantime.
+/// Number of times that an attempt begins a group again because another one removed its files.
+constexpr int kMostRetries = 3;
+
+/// Runs one group, unless it is finished. Where another attempt finished the rows and removed those
+/// of this one, this one takes over the rows that are there, or the finished group.
 RunOutcome run_group(const StudyPlan& group, const fs::path& folder, const RunOptions& options,
                      std::optional<double> time_left) {
   const fs::path sums = file_in(folder, "group", group.first_run);
-  if (is_finished(sums, group, options.provenance)) return {};
-  try {
-    return make_group(group, folder, options, time_left);
-  } catch (const std::runtime_error&) {
-    if (!options.attempt || !is_finished(sums, group, options.provenance)) throw;
-    return {};
+  for (int retries = 0;; ++retries) {
+    if (is_finished(sums, group, options.provenance)) return {};
+    try {
+      return make_group(group, folder, options, time_left);
+    } catch (const std::runtime_error&) {
+      const bool has_rows = is_there(file_in(folder, "rows", group.first_run));
+      const bool was_overtaken = has_rows || is_finished(sums, group, options.provenance);
+      if (!options.attempt || !was_overtaken || retries == kMostRetries) throw;
+    }
   }
 }
 

@@ -138,6 +138,14 @@ ClaimSearch claim_one(const ShardWorker& worker, const std::vector<fs::path>& mi
   return watch_others(missing, patience);
 }
 
+/// Says in a claim why its worker failed. A damaged shard, which the message of the merge names, is
+/// no loss of a worker.
+void note_failure(const Worker& worker, WorkClaim& claim, const std::exception& error) {
+  const bool is_damage = dynamic_cast<const StudyError*>(&error) != nullptr;
+  if (is_damage && claim.file() == worker.folder.result()) return claim.leave();
+  claim.fail(error.what());
+}
+
 /// Makes a file that is claimed, and removes the claims on it. Returns as compute() does.
 int make_claimed(const ShardWorker& worker, std::unique_ptr<WorkClaim> claim) {
   const fs::path file = claim->file();
@@ -150,16 +158,11 @@ int make_claimed(const ShardWorker& worker, std::unique_ptr<WorkClaim> claim) {
         code = compute(worker, *claim);
       }
     }
-  } catch (const StudyError& error) {
-    if (file == worker.folder.result()) {
-      claim->leave();  // a damaged shard, which the message names, is no loss of a worker
-    } else {
-      claim->fail(error.what());
-    }
-    throw;
   } catch (const std::exception& error) {
-    claim->fail(error.what());
-    throw;
+    if (!is_there(file)) {
+      note_failure(worker, *claim, error);
+      throw;
+    }  // else another worker finished it, and removed the files of this one
   }
   claim.reset();
   if (is_there(file)) remove_claims(file);
