@@ -140,7 +140,7 @@ ClaimSearch claim_one(const ShardWorker& worker, const std::vector<fs::path>& mi
 
 /// Says in a claim why its worker failed. A damaged shard, which the message of the merge names, is
 /// no loss of a worker.
-void note_failure(const Worker& worker, WorkClaim& claim, const std::exception& error) {
+void note_failure(const ShardWorker& worker, WorkClaim& claim, const std::exception& error) {
   const bool is_damage = dynamic_cast<const StudyError*>(&error) != nullptr;
   if (is_damage && claim.file() == worker.folder.result()) return claim.leave();
   claim.fail(error.what());
