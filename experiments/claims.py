@@ -282,7 +282,8 @@ class Ledger:
         return self.studies[name]
 
     def check_metric(self, metric, path):
-        if metric not in self.metrics and not printed.BAND_METRIC.match(metric):
+        column = metric.removeprefix(printed.VARIANCE_OF)
+        if column not in self.metrics and not printed.BAND_METRIC.match(metric):
             raise PrintedError(f"{path}: there is no metric '{metric}': correct it")
 
     def printed_rows(self, page):
