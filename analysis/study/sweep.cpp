@@ -81,11 +81,11 @@ std::vector<SweptCells> groups_of(const StudyAnalysis& study, const std::vector<
 /// "de_srcd mode=shared": the filter and the settings that other groups of it have otherwise.
 std::string name_of(const SweptCells& group, const std::vector<SweptCells>& groups) {
   std::string name = group.filter;
-  for (const auto& [setting, value] : group.others) {
+  for (const auto& setting : group.others) {
     const bool differs = std::ranges::any_of(groups, [&](const SweptCells& other) {
-      return other.filter == group.filter && other.others.at(setting) != value;
+      return other.filter == group.filter && other.others.at(setting.first) != setting.second;
     });
-    if (differs) name.append(" ").append(setting).append("=").append(value);
+    if (differs) name.append(" ").append(setting.first).append("=").append(setting.second);
   }
   return name;
 }

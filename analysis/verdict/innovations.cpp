@@ -255,12 +255,13 @@ bool Innovations::are_decided_by_largest() const {
 }
 
 std::string whiteness_in_words(Whiteness whiteness, std::optional<Answer> size) {
-  const std::string words = whiteness == Whiteness::untested ? "whiteness not tested"
-                            : whiteness == Whiteness::white  ? "white"
-                                                             : "not white";
-  if (!size) return words;
-  if (whiteness != Whiteness::not_white) return words + ", " + name_of(*size);
-  return words + ", size " + (*size == Answer::untested ? "not judged" : name_of(*size));
+  const char* const text = whiteness == Whiteness::untested ? "whiteness not tested"
+                           : whiteness == Whiteness::white  ? "white"
+                                                            : "not white";
+  if (!size) return text;
+  if (whiteness != Whiteness::not_white) return text + (", " + name_of(*size));
+  return std::string(text) + ", size " +
+         (*size == Answer::untested ? "not judged" : name_of(*size));
 }
 
 std::string whiteness_in_words(const Innovations& found) {
