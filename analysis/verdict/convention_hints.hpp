@@ -71,6 +71,6 @@ class ConventionHints {
 /// tested, and if only the verdict, which has more tests, refutes the stated convention
 /// (`is_refuted`): then what the hint does not reject may be refuted likewise.
 std::string in_words(const ConventionHint& hint, const std::string& cell, const std::string& said,
-                     bool is_refuted);
+                     bool is_refuted = false);
 
 }  // namespace montecarta::analysis
