@@ -127,7 +127,7 @@ bool JointBound::correct(const Pose& pose, std::span<const SeenLandmark> landmar
         observations[k].by_landmark * gain.middleRows<2>(row_of(landmarks[k].identity));
     S.diagonal().segment<2>(i) += observation_variance_;
   }
-  return subtract(std::move(gain), S);
+  return subtract(gain, S);
 }
 
 bool JointBound::fix(double variance) {
@@ -137,11 +137,12 @@ bool JointBound::fix(double variance) {
 }
 
 /// P <- P - W W' with W = `gain` L^-T and S = L L'.
-bool JointBound::subtract(Eigen::MatrixXd gain, const Eigen::MatrixXd& S) {
+bool JointBound::subtract(const Eigen::MatrixXd& gain, const Eigen::MatrixXd& S) {
   const Eigen::LLT<Eigen::MatrixXd> factor(S);
   if (factor.info() != Eigen::Success) return false;
-  factor.matrixU().solveInPlace<Eigen::OnTheRight>(gain);
-  joint_.topLeftCorner(size_, size_).selfadjointView<Eigen::Lower>().rankUpdate(gain, -1.0);
+  Eigen::MatrixXd W = gain;
+  factor.matrixU().solveInPlace<Eigen::OnTheRight>(W);
+  joint_.topLeftCorner(size_, size_).selfadjointView<Eigen::Lower>().rankUpdate(W, -1.0);
   pose_ = joint_.topLeftCorner<3, 3>();
   mirror_lower(pose_);
   joint_.topLeftCorner<3, 3>() = pose_;

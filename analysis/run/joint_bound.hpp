@@ -56,7 +56,7 @@ class JointBound {
   void add_increment_noise(const Pose& pose, const Control& control, double duration);
   void finish_motion();
   [[nodiscard]] bool correct(const Pose& pose, std::span<const SeenLandmark> landmarks);
-  [[nodiscard]] bool subtract(Eigen::MatrixXd gain, const Eigen::MatrixXd& S);
+  [[nodiscard]] bool subtract(const Eigen::MatrixXd& gain, const Eigen::MatrixXd& S);
   void append(const Pose& pose, const SeenLandmark& landmark);
   void append_unknown(const SeenLandmark& landmark);
   Eigen::VectorXd column(Eigen::Index j) const;

@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <map>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace montecarta::experiments {
@@ -23,7 +24,10 @@ inline constexpr std::array<std::size_t, 3> kPredictionIntervals = {1, 3, 10};
 struct LatticePoint {
   int motion = 0;
   int sensor = 0;
-  auto operator<=>(const LatticePoint&) const = default;
+  bool operator==(const LatticePoint&) const = default;
+  bool operator<(const LatticePoint& other) const {
+    return std::pair(motion, sensor) < std::pair(other.motion, other.sensor);
+  }
 };
 inline constexpr int kOctave = 8;
 /// Farthest point of the lattice: a factor of 64.

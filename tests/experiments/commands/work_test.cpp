@@ -2,6 +2,9 @@
 // Workers that share a folder: each case ends with the bits of one machine.
 #include "engine/records/posix_file.hpp"
 #include "engine/records/result_file.hpp"
+#include "experiments/commands/shard_folder.hpp"
+#include "experiments/study/known_filters.hpp"
+#include "experiments/study/study.hpp"
 #include "tests/doubles/same_results.hpp"
 #include "tests/experiments/commands/program.hpp"
 
@@ -43,7 +46,16 @@ class SharedFolder : public BlinkProgram {
     return text_of("told");
   }
   /// Makes the folder and its plan. Every shard remains to be computed.
-  void lay_out() const { ASSERT_EQ(call_with(first(), {"--time-budget", "0.001"}).code, 85); }
+  void lay_out() const {
+    const std::vector<std::string> twelve = {"study.runs=12"};
+    const Study study = read_study(folder_ / "blink.ini", known_filters(), twelve);
+    ShardFolder::make(folder_ / "f", study,
+                      {.runs = 12,
+                       .cells = study.cells.size(),
+                       .shards = 4,
+                       .program = program_under_test(),
+                       .settings = settings_beside_text(study)});
+  }
   void expect_the_bits_of_one_machine(const std::string& runs = "12") const {
     ASSERT_EQ(
         call({"run", "blink.ini", "-o", "one.h5", "--quiet", "--set", "study.runs=" + runs}).code,
