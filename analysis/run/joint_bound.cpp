@@ -6,8 +6,6 @@
 
 #include <Eigen/Cholesky>
 
-#include <utility>
-
 namespace montecarta::analysis {
 namespace {
 
@@ -140,8 +138,7 @@ bool JointBound::fix(double variance) {
 bool JointBound::subtract(const Eigen::MatrixXd& gain, const Eigen::MatrixXd& S) {
   const Eigen::LLT<Eigen::MatrixXd> factor(S);
   if (factor.info() != Eigen::Success) return false;
-  Eigen::MatrixXd W = gain;
-  factor.matrixU().solveInPlace<Eigen::OnTheRight>(W);
+  const Eigen::MatrixXd W = factor.matrixU().solve<Eigen::OnTheRight>(gain);
   joint_.topLeftCorner(size_, size_).selfadjointView<Eigen::Lower>().rankUpdate(W, -1.0);
   pose_ = joint_.topLeftCorner<3, 3>();
   mirror_lower(pose_);
