@@ -211,7 +211,7 @@ std::vector<Section::Block> leads_of(const StudyAnalysis& study) {
       continue;
     }
     std::string words = cell.label + ", innovations: " + whiteness_in_words(*found);
-    if (found->judge_size()) {
+    if (found->judges_size()) {
       words += "; NIS per component " + with_interval(found->ratio, found->verdict.ratio()) +
                ", where 1 is right";
     }

@@ -251,7 +251,7 @@ Whiteness Innovations::whiteness_of_nis() const {
 bool Innovations::are_decided_by_largest() const {
   if (std::isnan(largest.ratio_without)) return false;
   return whiteness_of_nis() != largest.whiteness_without ||
-         (judge_size() && is_off(verdict.answer) != is_off(largest.answer_without));
+         (judges_size() && is_off(verdict.answer) != is_off(largest.answer_without));
 }
 
 std::string whiteness_in_words(Whiteness whiteness, std::optional<Answer> size) {
@@ -267,13 +267,13 @@ std::string whiteness_in_words(Whiteness whiteness, std::optional<Answer> size) 
 std::string whiteness_in_words(const Innovations& found) {
   const Answer size = found.verdict.answer;
   return whiteness_in_words(found.whiteness(),
-                            found.judge_size() ? std::optional(size) : std::nullopt);
+                            found.judges_size() ? std::optional(size) : std::nullopt);
 }
 
 std::string whiteness_without_largest(const Innovations& found) {
   const Answer size = found.largest.answer_without;
   return whiteness_in_words(found.largest.whiteness_without,
-                            found.judge_size() ? std::optional(size) : std::nullopt);
+                            found.judges_size() ? std::optional(size) : std::nullopt);
 }
 
 }  // namespace montecarta::analysis

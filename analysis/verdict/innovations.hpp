@@ -84,7 +84,7 @@ struct Innovations {
   std::vector<ComponentCorrelation> components;
 
   /// Whether `verdict` judges the size. If components are known, the verdict on errors does.
-  bool judge_size() const { return components.empty(); }
+  bool judges_size() const { return components.empty(); }
   Whiteness whiteness() const;
   /// By the NIS alone, without the components.
   Whiteness whiteness_of_nis() const;

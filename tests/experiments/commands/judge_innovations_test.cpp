@@ -115,7 +115,7 @@ TEST_F(JudgeInnovations, OfSensorsWithOppositeFaultsAreBothOff) {
     EXPECT_TRUE(bias->is_rejected) << cell.label;
     const auto& found = cell.get<analysis::Innovations>();
     EXPECT_TRUE(found.components.front().has_bias()) << cell.label;
-    EXPECT_FALSE(found.judge_size()) << "the verdict on errors does";
+    EXPECT_FALSE(found.judges_size()) << "the verdict on errors does";
   }
 }
 
