@@ -192,6 +192,8 @@ INSTANTIATE_TEST_SUITE_P(All, EveryParticleFilter,
                            return kind.reports.particles;
                          })),
                          [](const auto& instance) { return instance.param.name; });
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(EveryParticleFilter);
+
 INSTANTIATE_TEST_SUITE_P(All, EveryFilter, testing::ValuesIn(filters_held_to_laws()),
                          [](const auto& instance) { return instance.param.name; });
 
