@@ -83,7 +83,6 @@ void print_head(std::ostream& out, const StudyAnalysis& study, std::size_t width
       << '\n';
   if (study.has_failures()) print_failures(out, study, width);
   if (!study.has_truth) out << engine::wrapped(no_truth_sentence(study), width) << '\n';
-  print_facts(out, study, width);
   print_sentences(out, study, width);
 }
 
@@ -98,6 +97,7 @@ void print_cautions(std::ostream& out, const StudyAnalysis& study, std::size_t w
 }  // namespace
 
 void print_sentences(std::ostream& out, const StudyAnalysis& study, std::size_t width) {
+  print_facts(out, study, width);
   bool has_any = false;
   for (const Section& section : terminal_sections(study)) {
     for (const auto& lead : section.all<Section::Lead>()) {
