@@ -114,10 +114,12 @@ void print_summary(std::ostream& out, const StudyAnalysis& study, std::size_t wi
     print_table(out, summary_table(study), width);
     out << '\n';
   } else {
+    constexpr std::size_t kMostDrives = 10;  // of which each has a row for every cell
     for (const Section& section : terminal_sections(study)) {
-      const bool is_wanted = study.references.empty()
-                                 ? section.name == "innovations"
-                                 : section.name == "drive" || section.name == "references";
+      const bool is_wanted =
+          (section.name == "own_drives" && study.own_drives <= kMostDrives) ||
+          (study.references.empty() ? section.name == "innovations"
+                                    : section.name == "drive" || section.name == "references");
       if (is_wanted) print_section_tables(out, section, width);
     }
   }
