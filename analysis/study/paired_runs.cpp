@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 namespace montecarta::analysis {
 namespace {
@@ -32,6 +31,11 @@ EndedRuns ended_runs(const CellAnalysis& cell, const Score& score) {
 
 }  // namespace
 
+bool are_equal(double a, double b) {
+  constexpr double kRoundingOfTie = 1e-9;
+  return a == b || std::abs(a - b) <= kRoundingOfTie * std::min(std::abs(a), std::abs(b));
+}
+
 std::vector<std::pair<std::size_t, std::size_t>> common_places(
     std::span<const std::uint64_t> left, std::span<const std::uint64_t> right) {
   std::vector<std::pair<std::size_t, std::size_t>> places;
@@ -44,7 +48,8 @@ std::vector<std::pair<std::size_t, std::size_t>> common_places(
 
 std::vector<double> PairedRuns::differences() const {
   std::vector<double> differences(left.size());
-  std::ranges::transform(left, right, differences.begin(), std::minus());
+  std::ranges::transform(left, right, differences.begin(),
+                         [](double l, double r) { return are_equal(l, r) ? 0.0 : l - r; });
   return differences;
 }
 

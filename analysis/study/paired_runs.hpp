@@ -16,6 +16,9 @@ namespace montecarta::analysis {
 std::vector<std::pair<std::size_t, std::size_t>> common_places(
     std::span<const std::uint64_t> left, std::span<const std::uint64_t> right);
 
+/// Returns whether two scores differ by rounding alone: then they are a tie.
+bool are_equal(double a, double b);
+
 /// Runs of two cells in the same worlds. A cell has no value in a run that failed or that has no
 /// finite score; such a run is won by the other cell if that has a value.
 struct PairedRuns {
@@ -26,7 +29,7 @@ struct PairedRuns {
   std::size_t unpaired = 0;  ///< number of runs that ended in only one of the two cells
 
   std::size_t ended() const { return left.size() + left_alone + right_alone + neither; }
-  /// Left minus right, for each run in which both have a value.
+  /// Left minus right, for each run in which both have a value; 0 where they are equal.
   std::vector<double> differences() const;
 };
 

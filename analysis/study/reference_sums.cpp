@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/study/reference_sums.hpp"
 
+#include "analysis/study/paired_runs.hpp"
 #include "analysis/study/prose.hpp"
 #include "analysis/study/score_table.hpp"
 
@@ -78,12 +79,6 @@ double score_of_run(const CellAnalysis& cell, std::uint64_t run, double Referenc
   const auto found = std::ranges::lower_bound(cell.runs, run);
   if (found == cell.runs.end() || *found != run) return std::numeric_limits<double>::infinity();
   return leading_of(cell).runs[static_cast<std::size_t>(found - cell.runs.begin())].*score;
-}
-
-/// Returns whether two scores differ by rounding alone.
-bool are_equal(double a, double b) {
-  constexpr double kRoundingOfTie = 1e-9;
-  return a == b || std::abs(a - b) <= kRoundingOfTie * std::min(std::abs(a), std::abs(b));
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ Metric errors_metric(), consistency_metric(), verdict_metric(), families_metric(
     map_errors_metric(), joint_nees_metric(), error_envelopes_metric(), innovations_metric(),
     diversity_metric(), calibration_metric(), cost_metric(), convention_hints_metric(),
     smoother_metric(), proper_scores_metric(), observability_metric(), evolution_metric(),
-    sweep_metric();
+    sweep_metric(), own_drives_metric();
 
 std::span<const Metric> all_metrics() {
   // The order is that of their numbers in files.
@@ -35,7 +35,8 @@ std::span<const Metric> all_metrics() {
       joint_nees_metric,       error_envelopes_metric, innovations_metric,
       diversity_metric,        calibration_metric,     cost_metric,
       convention_hints_metric, smoother_metric,        proper_scores_metric,
-      observability_metric,    evolution_metric,       sweep_metric};
+      observability_metric,    evolution_metric,       sweep_metric,
+      own_drives_metric};
   static const std::vector<Metric> all = [] {
     std::vector<Metric> made;
     for (Metric (*make)() : kMakers) made.push_back(make());

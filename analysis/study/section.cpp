@@ -33,6 +33,7 @@ const std::vector<SectionPlace>& reading_order() {
       {"cards", {}, Section::Shown::open},
       {"drive", {}, Section::Shown::open},
       {"references", {"reference_error"}, Section::Shown::open},
+      {"own_drives", {}, Section::Shown::open},
       {"nees", {"anees"}, Section::Shown::open},
       {"replay", {}, Section::Shown::open},
       {"errors",

@@ -26,7 +26,8 @@ Wins wins_of(const PairedRuns& pairs, const Score& score) {
   Wins wins;
   if (score.better != Better::neither) wins = {pairs.left_alone, pairs.right_alone, pairs.neither};
   for (std::size_t i = 0; i < pairs.left.size(); ++i) {
-    const double behind = disadvantage(score, pairs.left[i], pairs.right[i]);
+    const double left = pairs.left[i], right = pairs.right[i];
+    const double behind = are_equal(left, right) ? 0.0 : disadvantage(score, left, right);
     ++(behind < 0.0 ? wins.won : behind > 0.0 ? wins.lost : wins.tied);
   }
   wins.p = wins.p_holm = sign_test(wins.won, wins.lost);

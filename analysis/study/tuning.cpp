@@ -46,8 +46,8 @@ std::string tuned_text(const TunedFactor& factor) {
 void add_tuned_row(const std::string& name, const std::optional<TunedNoise>& noise,
                    TextTable& table) {
   table.add({{"scans ahead", name, Align::left},
-             {"motion_noise [95 %]", noise ? tuned_text(noise->motion) : "no minimum"},
-             {"sensor_noise [95 %]", noise ? tuned_text(noise->sensor) : "no minimum"}});
+             {"factor on motion [95 %]", noise ? tuned_text(noise->motion) : "no minimum"},
+             {"factor on sensor [95 %]", noise ? tuned_text(noise->sensor) : "no minimum"}});
 }
 
 /// "+4.1 %" of a logarithm.
@@ -55,12 +55,12 @@ std::string change_text(double logarithm) {
   return (logarithm < 0.0 ? "" : "+") + readable(100.0 * std::expm1(logarithm), 2) + " %";
 }
 
-/// Names of the factors for which `holds`.
+/// The noises on whose factors something holds: "motion", "motion and sensor"; empty if on none.
 template <class Condition>
-std::string names_of_factors(const TunedNoise& noise, const Condition& holds) {
+std::string noises_for_which(const TunedNoise& noise, const Condition& holds) {
   std::string names;
-  if (holds(noise.motion)) names = "motion_noise";
-  if (holds(noise.sensor)) names += (names.empty() ? "" : " and ") + std::string("sensor_noise");
+  if (holds(noise.motion)) names = "motion";
+  if (holds(noise.sensor)) names += (names.empty() ? "" : " and ") + std::string("sensor");
   return names;
 }
 
@@ -128,6 +128,7 @@ std::string tuning_sentence(const TuningResult& result, const TuningConfirmation
       confirmation.answer == Answer::undecided || confirmation.answer == Answer::untested;
   const char* const key = confirmation.answer == Answer::consistent ? "consistent"
                           : is_open                                 ? "undecided"
+                          : confirmation.is_slight                  ? "slight"
                                                                     : "not consistent";
   return found + " " +
          prose("tuning", key,
@@ -140,17 +141,17 @@ std::vector<std::string> tuning_notes(const TuningResult& result,
   std::vector<std::string> notes = {gain_note(result, confirmation)};
   if (auto failed = failed_note(result, confirmation); !failed.empty())
     notes.push_back(std::move(failed));
-  const auto note = [&](const char* key, const std::string& factors) {
-    if (!factors.empty()) notes.push_back(prose("tuning", key, {{"factors", factors}}));
+  const auto note = [&](const char* key, const std::string& noises) {
+    if (!noises.empty()) notes.push_back(prose("tuning", key, {{"noises", noises}}));
   };
   note("no influence",
-       names_of_factors(noise, [](const TunedFactor& one) { return !one.is_free(); }));
+       noises_for_which(noise, [](const TunedFactor& one) { return !one.is_free(); }));
   if (noise.motion.is_free() && noise.sensor.is_free()) {
     notes.push_back(prose("tuning", "direction",
                           {{"motion", change_text(noise.motion_apart)},
                            {"sensor", change_text(noise.sensor_apart)}}));
   }
-  note("flat", names_of_factors(noise, is_flat));
+  note("flat", noises_for_which(noise, is_flat));
   if (result.has_gate) notes.push_back(prose("tuning", "gate"));
   if (depend_on_interval(result.by_interval)) notes.push_back(prose("tuning", "not white"));
   if (result.has_truth) {
@@ -189,7 +190,7 @@ TextTable landscape_table(const NoiseGrid& grid) {
 
 Frame landscape_frame(const NoiseGrid& grid) {
   Frame frame;
-  for (const char* name : {"motion_noise", "sensor_noise", "score"})
+  for (const char* name : {"motion_factor", "sensor_factor", "score"})
     frame.columns.push_back({.name = name});
   for (std::size_t i = 0; i < grid.motion.size(); ++i) {
     for (std::size_t j = 0; j < grid.sensor.size(); ++j)

@@ -72,6 +72,7 @@ struct TuningConfirmation {
   std::uint64_t failed_before = 0, failed_after = 0;
   ScoreDifference gain = {};  ///< score with the old noise minus score with the new one
   Answer answer = Answer::untested;
+  bool is_slight = false;    ///< whether what is off is not shown to be beyond the margin
   std::string verdict = {};  ///< the verdict on the new noise in a few words
   /// Factors on the covariance by which its 95 % ellipsoid covers the truth in at least 95 % of
   /// runs, at the last scan, and at all scans of a run together; infinite if too many runs failed;
@@ -93,9 +94,9 @@ std::string tuning_table_note();
 std::string landscape_note();
 /// The grid of scores, above the least one.
 TextTable landscape_table(const NoiseGrid& grid);
-/// The same as columns motion_noise, sensor_noise, score.
+/// The same as columns motion_factor, sensor_factor, score.
 Frame landscape_frame(const NoiseGrid& grid);
-/// The same as curves over motion_noise.
+/// The same as curves over the factor on motion.
 Figure landscape_figure(const TuningResult& result);
 
 }  // namespace montecarta::analysis

@@ -259,9 +259,9 @@ std::string whiteness_in_words(Whiteness whiteness, std::optional<Answer> size) 
                            : whiteness == Whiteness::white  ? "white"
                                                             : "not white";
   if (!size) return text;
-  if (whiteness != Whiteness::not_white) return text + (", " + name_of(*size));
-  return std::string(text) + ", size " +
-         (*size == Answer::untested ? "not judged" : name_of(*size));
+  if (*size == Answer::untested) return std::string(text) + ", size not judged";
+  return std::string(text) + (whiteness == Whiteness::not_white ? ", size " : ", ") +
+         name_of(*size);
 }
 
 std::string whiteness_in_words(const Innovations& found) {

@@ -97,12 +97,22 @@ StudyAnalysis analysis_of(const StudyPlan& plan, const fs::path& file, const Arg
   return analyze(ResultFile(file), kUsualLevel, options.parallel);
 }
 
+/// The options that give the cell the noise that was found.
+std::string options_text(const TunedNoise& noise, const CellSpec& tuned) {
+  std::string text;
+  for (const Parameter& option : mismatch_options()) {
+    const TunedFactor& factor = option.key == "motion_noise" ? noise.motion : noise.sensor;
+    if (factor.is_free()) text += " " + option.key + "=" + to_text(mismatch_of(tuned, option.key));
+  }
+  return text;
+}
+
 void print_findings(const TuningResult& result, const TuningConfirmation& confirmation,
                     const CellSpec& tuned) {
   const std::size_t width = output_width();
   const auto print = [&](const std::string& text) { std::cout << wrapped(text, width, 2); };
   print(tuning_sentence(result, confirmation));
-  print("Write: cell = " + cell_line(tuned));
+  print("Write" + options_text(result.noise, tuned) + " into its cell.");
   std::cout << '\n';
   print_table(std::cout, tuning_table(result), width);
   print(tuning_table_note());
@@ -145,6 +155,7 @@ int tune_command(const Arguments& arguments) {
     const StudyAnalysis analysis = analysis_of(
         plan, (folder ? fs::path(*folder) : passing.path()) / kConfirmationFile, arguments);
     confirmation.answer = analysis.cells.back().verdict.answer;
+    confirmation.is_slight = analysis.cells.back().verdict.is_slight();
     confirmation.verdict = in_words(analysis.cells.back().verdict);
     print_findings(result, confirmation, confirming.cells.back());
     std::cout << '\n';

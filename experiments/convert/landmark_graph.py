@@ -23,7 +23,8 @@ POSE = ("x", "y", "heading")
 POINT = ("x", "y")
 MATRIX = tuple(f"element {k} of the information" for k in range(1, 7))
 KINDS = {"VERTEX_SE2": "pose", "VERTEX2": "pose", "VERTEX_XY": "landmark", "EDGE_SE2": "motion",
-         "EDGE2": "motion", "EDGE_SE2_XY": "detection", "FIX": "fix"}
+         "EDGE2": "motion", "EDGE_SE2_XY": "detection", "FIX": None,
+         "PARAMS_SE2OFFSET": None}  # these edges have no sensor that is mounted elsewhere
 IDS = {"pose": ("pose",), "landmark": ("landmark",), "motion": ("first pose", "second pose"),
        "detection": ("pose", "landmark")}
 NUMBERS = {"pose": POSE, "landmark": POINT, "motion": (*POSE, *MATRIX),
@@ -43,13 +44,12 @@ class Graph:
         self.repeated = 0      # further edges between the same two poses
         for line, (tag, *words) in robot_log.lines_of(path):
             place = f"{path}:{line}"
-            kind = KINDS.get(tag)
-            if kind is None:
+            if tag not in KINDS:
                 raise ConversionError(f"{place}: '{tag[:40]}' is no tag that is read ("
                                       f"{', '.join(KINDS)} are): leave out the line if the drive "
                                       "does without it")
-            if kind != "fix":
-                self._add(kind, tag, words, line)
+            if KINDS[tag] is not None:
+                self._add(KINDS[tag], tag, words, line)
 
     def _add(self, kind, tag, words, line):
         place = f"{self.path}:{line}"

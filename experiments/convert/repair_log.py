@@ -80,10 +80,19 @@ def repaired_detections(table, within):
     return table.repaired(*steps)
 
 
+def start_in(folder):
+    """The start, which is one row."""
+    start = table_in(folder, "start.csv").repaired(robot_log.without_equal)
+    if len(start.rows.numbers) > 1:
+        raise ConversionError(f"{start.rows.place(1)}: another start (a drive starts at one pose): "
+                              "leave one out")
+    return start
+
+
 def convert(arguments):
     folder, within = arguments.folder, arguments.sort_within
     conversion.check_new(arguments.output)
-    start = table_in(folder, "start.csv")
+    start = start_in(folder)
     once = functools.partial(robot_log.one_row_a_time, within=within)
     odometry = table_in(folder, "odometry.csv").repaired(once)
     first, last = start.rows.numbers[0, 0], odometry.rows.numbers[-1, 0]
@@ -103,7 +112,7 @@ def convert(arguments):
         (_, header), *rows = lines_in(landmarks)
         conversion.write_rows(os.path.join(arguments.output, "landmarks.csv"), header,
                               [line for _, line in rows])
-    robot_log.report(*(table.rows for table in tables))
+    robot_log.report(*(table.rows for table in [start, *tables]))
 
 
 if __name__ == "__main__":

@@ -28,8 +28,11 @@ Parameter known_option(const FilterKind& filter, const std::string& key, const s
     if (option.key == key) return std::move(option);
     known.push_back(option.key);
   }
+  const std::string section = sections_with(key);
   throw StudyError(place + ": " + filter.name + " has no option '" + key +
-                   "' (nothing would come of it): " + nearest_spelling(key, known));
+                   (section.empty()
+                        ? "' (nothing would come of it): " + nearest_spelling(key, known)
+                        : "' (it is no part of a cell): write it under " + section));
 }
 
 constexpr std::size_t kLongestLabel = 200;
@@ -239,6 +242,14 @@ void refuse_association(const Settings& settings, const CellSpec& cell, const Se
                    cell.filter->name + " cannot associate it): set association.kind = known");
 }
 
+[[noreturn]] void refuse_key_among_cells(const IniEntry& entry) {
+  const std::string problem = entry.place + ": unknown key cells." + entry.key;
+  const std::string section = sections_with(entry.key);
+  if (!section.empty())
+    throw StudyError(problem + " (it belongs to another section): move it to " + section);
+  throw StudyError(problem + " (a cell is cell = FILTER key=value ...): did you mean cell?");
+}
+
 }  // namespace
 
 std::vector<CellSpec> read_cells(std::span<const IniEntry> entries, const std::string& name,
@@ -246,10 +257,7 @@ std::vector<CellSpec> read_cells(std::span<const IniEntry> entries, const std::s
   std::vector<CellSpec> cells;
   for (const IniEntry& entry : entries) {
     if (entry.section != "cells") continue;
-    if (entry.key != "cell") {
-      throw StudyError(entry.place + ": unknown key cells." + entry.key +
-                       " (a cell is cell = FILTER key=value ...): did you mean cell?");
-    }
+    if (entry.key != "cell") refuse_key_among_cells(entry);
     for (CellSpec& cell : read_line(entry, filters, controls_are_measured))
       cells.push_back(std::move(cell));
   }
@@ -259,6 +267,23 @@ std::vector<CellSpec> read_cells(std::span<const IniEntry> entries, const std::s
   label_cells(cells);
   refuse_equal_labels(cells);
   return cells;
+}
+
+void refuse_options_outside_cells(std::span<const IniEntry> entries,
+                                  std::span<const FilterKind> filters) {
+  for (const IniEntry& entry : entries) {
+    if (entry.section == "cells" || entry.section == "world" || !sections_with(entry.key).empty())
+      continue;
+    const auto has_option = [&](const FilterKind& filter) {
+      return std::ranges::count(all_options(filter), entry.key, &Parameter::key) > 0;
+    };
+    const auto filter = std::ranges::find_if(filters, has_option);
+    if (filter == filters.end()) continue;
+    throw StudyError(entry.place + ": unknown key " + entry.section + "." + entry.key +
+                     " (it is an option of a cell): write it behind the filter under [cells], e.g. "
+                     "cell = " +
+                     filter->name + " " + entry.key + "=" + entry.value);
+  }
 }
 
 std::string filters_that(std::span<const FilterKind> filters, bool FilterKind::*takes) {

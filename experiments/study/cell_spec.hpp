@@ -37,6 +37,11 @@ double mismatch_of(const CellSpec& cell, std::string_view name);
 std::vector<CellSpec> read_cells(std::span<const IniEntry> entries, const std::string& name,
                                  std::span<const FilterKind> filters, bool controls_are_measured);
 
+/// Throws StudyError if a key outside of [cells] is none of its section, but an option of one of
+/// `filters`.
+void refuse_options_outside_cells(std::span<const IniEntry> entries,
+                                  std::span<const FilterKind> filters);
+
 /// The line that reads back as this cell: "fastslam2 label=fastslam2_m100 particles=100 ...".
 std::string cell_line(const CellSpec& cell);
 

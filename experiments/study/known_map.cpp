@@ -4,6 +4,8 @@
 #include "engine/errors.hpp"
 #include "experiments/text/words.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <vector>
 
 namespace montecarta::experiments {
@@ -19,6 +21,27 @@ void refuse_deviations(const Settings& settings) {
                      "the start, which is exact by definition): set belief.map = known, or remove "
                      "it");
   }
+}
+
+/// Says why a filter takes no known map.
+std::string reason_against_map(const std::string& filter) {
+  struct Reason {
+    const char* filters;  ///< part of their names
+    const char* text;
+  };
+  static constexpr Reason kReasons[] = {
+      {"dead_reckoning", "it uses no landmarks"},
+      {"external", "the protocol of programs has no message for a map"},
+      {"smoother", "it estimates the whole path from an exact first pose"},
+      {"relative", "its landmarks are relative to poses along the path, not to the world"},
+      {"marginal", "it learns one map for all particles; fastslam1 localises by particles"},
+      {"ampf", "it learns one map for all particles; fastslam1 localises by particles"},
+      {"fej_ekf", "it is made for directions that no detection shows; a known map has none"},
+      {"oc_ekf", "it is made for directions that no detection shows; a known map has none"},
+      {"robocentric", "it is made for directions that no detection shows; a known map has none"}};
+  const auto* const found = std::ranges::find_if(
+      kReasons, [&](const Reason& reason) { return filter.find(reason.filters) != filter.npos; });
+  return found == std::end(kReasons) ? "it cannot be started from a known map" : found->text;
 }
 
 }  // namespace
@@ -46,9 +69,8 @@ void refuse_known_map(const Settings& settings, std::span<const CellSpec> cells,
   }
   for (const CellSpec& cell : cells) {
     if (cell.filter->takes_prior) continue;
-    throw StudyError(cell.place + ": " + cell.filter->name +
-                     " with belief.map = known (it cannot be started from a known map): use one "
-                     "of " +
+    throw StudyError(cell.place + ": " + cell.filter->name + " with belief.map = known (" +
+                     reason_against_map(cell.filter->name) + "): use one of " +
                      filters_that(filters, &FilterKind::takes_prior) +
                      ", or set belief.map = estimated");
   }

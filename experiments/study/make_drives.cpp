@@ -93,6 +93,14 @@ void refuse_use_of_identities(const Settings& s) {
   }
 }
 
+/// Returns whether a detection may be of any landmark. A drive on which no landmark was seen has no
+/// such detection.
+bool has_unidentified(const DriveLog& log) {
+  return std::ranges::any_of(log.scans, [](const LoggedScan& scan) {
+    return std::ranges::count(scan.detections, Detection::kUnidentified, &Detection::identity) > 0;
+  });
+}
+
 /// Refuses a scan delay that moves scans before the start: all of these scans would be taken at the
 /// start, at one time and with the same random numbers.
 void refuse_early_scans(const Settings& s, const DriveLog& log) {
@@ -158,7 +166,7 @@ DriveLog judged(const Settings& s, DriveLog log) {
 RecordedDrive drive_of(const Settings& s, const DriveLog& log) {
   refuse_other_controls(s, log.controls);
   refuse_other_detections(s, log.components);
-  if (identities_in(log) == 0) refuse_use_of_identities(s);
+  if (has_unidentified(log)) refuse_use_of_identities(s);
   refuse_early_scans(s, log);
   refuse_impossible_steering(s, log);
   return {judged(s, log),
@@ -195,6 +203,7 @@ std::shared_ptr<const DriveSource> without_prior(const Study& study, std::uint64
     refuse_other_detections(s, components_of(sensor_of(s, "scenario")));
     return std::make_shared<SimulatedDrive>(study.world, scenario_of(s), seed);
   }
+  if (identities_of(study) == 0) refuse_use_of_identities(s);
   if (study.logs.size() > 1) return several_drives_of(study);
   return std::make_shared<RecordedDrive>(drive_of(s, *study.logs.front()));
 }

@@ -387,4 +387,12 @@ std::span<const Setting> study_settings() {
   return table;
 }
 
+std::string sections_with(std::string_view key) {
+  std::vector<std::string> sections;
+  for (const Setting& setting : study_settings()) {
+    if (setting.key == key) sections.push_back("[" + setting.section + "]");
+  }
+  return joined(sections, " or ");
+}
+
 }  // namespace montecarta::experiments

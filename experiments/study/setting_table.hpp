@@ -38,4 +38,7 @@ struct Setting : Parameter {
 /// All settings but those of the filters, section by section in the order of the resolved text.
 std::span<const Setting> study_settings();
 
+/// The sections that have a setting of this name: "[scenario] or [belief]"; empty if none has.
+std::string sections_with(std::string_view key);
+
 }  // namespace montecarta::experiments

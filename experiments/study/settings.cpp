@@ -157,9 +157,27 @@ const Setting& known_setting(const IniEntry& entry) {
     if (setting.section == entry.section) here.push_back(&setting);
   }
   const auto key_of = [](const Setting* setting) { return setting->key; };
-  return *item_called(entry.key, here, key_of,
-                      entry.place + ": unknown key " + entry.section + "." + entry.key +
-                          " (it would have no effect)");
+  const std::string problem = entry.place + ": unknown key " + entry.section + "." + entry.key;
+  const std::string elsewhere = sections_with(entry.key);
+  if (std::ranges::find(here, entry.key, key_of) == here.end() && !elsewhere.empty())
+    throw StudyError(problem + " (it belongs to another section): move it to " + elsewhere);
+  return *item_called(entry.key, here, key_of, problem + " (it would have no effect)");
+}
+
+/// Throws StudyError if the value is none of this setting, but one of the same key of another
+/// section: scenario.map = known.
+void refuse_value_of_other_section(const Setting& setting, const IniEntry& entry) {
+  const auto has_choice = [&](const Setting& one) {
+    return one.kind == Kind::choice && std::ranges::count(one.choices, entry.value) > 0;
+  };
+  if (setting.kind != Kind::choice || has_choice(setting)) return;
+  const auto other = std::ranges::find_if(study_settings(), [&](const Setting& one) {
+    return one.key == entry.key && has_choice(one);
+  });
+  if (other == study_settings().end()) return;
+  throw StudyError(entry.place + ": " + entry.section + "." + entry.key + " = " + entry.value +
+                   " (" + demand_of(setting) + " is needed): move it to [" + other->section +
+                   "], whose " + entry.key + " may be " + entry.value);
 }
 
 /// The setting of that name, which must be in the table.
@@ -201,6 +219,7 @@ std::string Settings::scenario_kind() const {
 
 void Settings::take(const IniEntry& entry) {
   const Setting& setting = known_setting(entry);
+  refuse_value_of_other_section(setting, entry);
   const SettingValue value{checked_value(setting, entry.value, entry.place), entry.place};
   const auto [at, fresh] = values_.try_emplace({entry.section, entry.key}, value);
   if (fresh) return;

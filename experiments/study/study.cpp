@@ -160,6 +160,7 @@ Study parse_study(const std::string& text, const std::string& name,
   IniText ini = read_ini(text, name);
   apply(overrides, ini);
   refuse_unknown_sections(ini);
+  refuse_options_outside_cells(ini.entries, filters);
   const Settings settings(ini.entries, name);
   const bool controls_are_measured = settings.scenario_kind() == "simulated" &&
                                      settings.text("scenario", "noise") == "measured-control";

@@ -183,8 +183,8 @@ NoiseGrid grid_of(NoiseLandscape& landscape, const LatticePoint& centre, const A
 }
 
 std::string factors_text(const LatticePoint& point) {
-  return "motion_noise x " + readable(factor_at(point.motion)) + ", sensor_noise x " +
-         readable(factor_at(point.sensor));
+  return "a factor of " + readable(factor_at(point.motion)) + " on motion and " +
+         readable(factor_at(point.sensor)) + " on sensor";
 }
 
 void refuse_no_minimum(const CellSpec& cell, const LatticePoint& least, const Axes& is_free) {

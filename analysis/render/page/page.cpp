@@ -233,6 +233,7 @@ std::string markdown_page(const StudyAnalysis& study, const std::vector<Section>
                           const TextPairs& provenance) {
   std::string page = "# " + markdown_escape(study.title.empty() ? study.study_name : study.title) +
                      "\n" + markdown_leading_figure(sections);
+  for (const std::string& fact : drive_facts(study)) page += "\n" + markdown_escape(fact) + "\n";
   for (const Section& section : sections) {
     if (section.is_for_terminal) page += markdown_section(section);
   }

@@ -83,7 +83,6 @@ void print_head(std::ostream& out, const StudyAnalysis& study, std::size_t width
       << '\n';
   if (study.has_failures()) print_failures(out, study, width);
   if (!study.has_truth) out << engine::wrapped(no_truth_sentence(study), width) << '\n';
-  print_facts(out, study, width);
   print_sentences(out, study, width);
 }
 
@@ -98,6 +97,7 @@ void print_cautions(std::ostream& out, const StudyAnalysis& study, std::size_t w
 }  // namespace
 
 void print_sentences(std::ostream& out, const StudyAnalysis& study, std::size_t width) {
+  print_facts(out, study, width);
   bool has_any = false;
   for (const Section& section : terminal_sections(study)) {
     for (const auto& lead : section.all<Section::Lead>()) {
@@ -114,10 +114,12 @@ void print_summary(std::ostream& out, const StudyAnalysis& study, std::size_t wi
     print_table(out, summary_table(study), width);
     out << '\n';
   } else {
+    constexpr std::size_t kMostDrives = 10;  // of which each has a row for every cell
     for (const Section& section : terminal_sections(study)) {
-      const bool is_wanted = study.references.empty()
-                                 ? section.name == "innovations"
-                                 : section.name == "drive" || section.name == "references";
+      const bool is_wanted =
+          (section.name == "own_drives" && study.own_drives <= kMostDrives) ||
+          (study.references.empty() ? section.name == "innovations"
+                                    : section.name == "drive" || section.name == "references");
       if (is_wanted) print_section_tables(out, section, width);
     }
   }

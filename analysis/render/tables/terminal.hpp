@@ -9,8 +9,8 @@
 
 namespace montecarta::analysis {
 
-/// Prints the verdict on each cell in a sentence, for a terminal of `width` columns like the
-/// functions below.
+/// Prints what happened on a recorded drive, then the verdict on each cell in a sentence, for a
+/// terminal of `width` columns like the functions below.
 void print_sentences(std::ostream& out, const StudyAnalysis& study, std::size_t width);
 
 /// Prints the failed runs, the sentences and one table with a row for each cell and its verdict.

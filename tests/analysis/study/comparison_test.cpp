@@ -150,6 +150,22 @@ TEST(CompareCells, KnowsWhichSideIsBetter) {
   EXPECT_EQ(found.rows.at(1).wins.lost, 20u);
 }
 
+TEST(CompareCells, ScoresThatDifferByRoundingAloneTie) {
+  std::vector<double> base(12), same(12);
+  for (std::size_t i = 0; i < base.size(); ++i) {
+    base[i] = 0.1 + 0.01 * static_cast<double>(i);
+    same[i] = base[i] * (1.0 - 1e-15);
+  }
+  const Comparisons found =
+      compare_cells(compared_study({compared_cell("base", base), compared_cell("same", same)}),
+                    "base", scores({"position_rmse"}));
+  const CellComparison& row = found.rows.at(0);
+  EXPECT_EQ(row.wins.tied, 12u);
+  EXPECT_EQ(row.rank.n, 0u);
+  EXPECT_EQ(row.difference, 0.0);
+  EXPECT_EQ(row.verdict(0.95), "undecided");
+}
+
 TEST(CompareCells, CountsNoFailureWhereNeitherSideIsBetter) {
   const auto cell = [](const std::string& label, const std::vector<double>& nees) {
     CellAnalysis made = compared_cell(label, nees);

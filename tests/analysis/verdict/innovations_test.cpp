@@ -175,6 +175,7 @@ TEST(Innovations, ThatAreNotWhiteAreJudgedByTheRunsOrNot) {
   EXPECT_EQ(few.verdict.answer, Answer::untested);
   EXPECT_NEAR(few.ratio, 1.0, 0.2) << "of all scans together";
   EXPECT_EQ(whiteness_in_words(few), "not white, size not judged");
+  EXPECT_EQ(whiteness_in_words(Whiteness::white, Answer::untested), "white, size not judged");
   study.runs = 20;
   const Innovations found = study.innovations(23);
   ASSERT_EQ(found.verdict.families.size(), 1u) << "the laws of stretches and scans do not hold";

@@ -187,6 +187,20 @@ TEST_F(Yard, NoNumberCountsWhatLiesInAGapBetweenScans) {
   EXPECT_THAT(text_of("page/index.html"), HasSubstr("55 of 60 fixes of reference"));
 }
 
+TEST_F(Yard, SaysWhatHappenedBeforeEveryVerdict) {
+  study("cell = ekf_slam\ncell = dead_reckoning\n");
+  analysed({"--set", "scenario.max_range=1"});
+  ASSERT_EQ(call({"report", "out.h5", "-o", "page"}).code, 0);
+  for (const std::string& shown : {call({"analyze", "out.h5"}).out,
+                                   call({"compare", "out.h5", "--baseline", "dead_reckoning"}).out,
+                                   text_of("page/summary.md")}) {
+    const std::size_t fact = shown.find("No landmark was initialised by ekf");
+    EXPECT_NE(fact, std::string::npos) << shown;
+    EXPECT_LT(fact, shown.find("cannot tell")) << shown;
+    EXPECT_EQ(shown.find("No landmark was initialised", fact + 1), std::string::npos) << "once";
+  }
+}
+
 TEST_F(Yard, SaysThatNoLandmarkWasInitialised) {
   study("cell = ekf_slam\ncell = riekf_slam\ncell = dead_reckoning\n");
   EXPECT_THAT(drive_facts(analysed()), testing::IsEmpty());

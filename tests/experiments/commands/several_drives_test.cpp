@@ -4,6 +4,7 @@
 #include "analysis/verdict/drive_verdict.hpp"
 #include "engine/records/result_file.hpp"
 #include "experiments/recordings/log_csv.hpp"
+#include "tests/doubles/csv_table.hpp"
 #include "tests/doubles/matchers.hpp"
 #include "tests/doubles/same_results.hpp"
 #include "tests/experiments/commands/program.hpp"
@@ -93,6 +94,47 @@ TEST_F(SeveralDrives, EachIsARunThatIsCompleteAndJudgedAsIndependent) {
   EXPECT_FALSE(exists("page/figures/map_size.svg"));
   EXPECT_EQ(call({"compare", "out.h5", "--baseline", "ekf_slam"}).code, 0);
   EXPECT_EQ(call({"check", "drives.ini"}).code, 0);
+}
+
+TEST_F(SeveralDrives, AreShownEachByItself) {
+  ASSERT_EQ(run("out.h5").code, 0);
+  const Called shown = call({"analyze", "out.h5", "--csv", "all"});
+  EXPECT_THAT(shown.out, HasSubstr("drive  raw RMS"));
+  const auto all = engine::read_csv(folder_ / "all/own_drives.csv");
+  ASSERT_EQ(all.size(), 6U);
+  std::size_t number = 0;
+  for (const std::string drive : {"long", "short", "middle"}) {
+    SCOPED_TRACE(drive);
+    ASSERT_EQ(run(drive + ".h5", {"--set", "scenario.path=" + drive, "--set", "study.runs=1"}).code,
+              0);
+    call({"analyze", drive + ".h5", "--csv", drive + "_alone"});
+    const auto alone = [&](const std::string& file, const std::string& column) {
+      return engine::read_csv(folder_ / (drive + "_alone") / file).at(0).at(column);
+    };
+    auto among_all = all[number++];
+    EXPECT_EQ(among_all["cell"], "ekf_slam");
+    EXPECT_EQ(among_all["rms [m]"], alone("runs.csv", "reference_rms [m]"));
+    EXPECT_EQ(among_all["nees_ratio"], alone("drive.csv", "pose_nees_ratio"));
+    EXPECT_EQ(among_all["nis_per_component"], alone("cells.csv", "nis_per_component"));
+  }
+  EXPECT_FALSE(exists("long_alone/own_drives.csv")) << "one drive is no drive among several";
+}
+
+// A robot that saw no landmark on one of its drives has a log without identities.
+TEST_F(SeveralDrives, OfWhichOneSawNoLandmarkAreRun) {
+  for (const std::string drive : {"long", "short", "middle"}) {
+    DriveLog log = read_log_csv(folder_ / drive);
+    for (LoggedScan& scan : log.scans) {
+      if (drive == "short") scan.detections.clear();
+      if (scan.detections.size() > 1) scan.detections.resize(1);
+      for (Detection& detection : scan.detections) detection.identity = 0;
+    }
+    std::filesystem::remove_all(folder_ / drive);
+    write_log_csv(log, folder_ / drive);
+  }
+  const Called called = run("out.h5");
+  ASSERT_EQ(called.code, 0) << called.err;
+  EXPECT_THAT(call({"analyze", "out.h5"}).out, HasSubstr("in 1 of 3 runs"));
 }
 
 TEST_F(SeveralDrives, StorePosesBetweenScansAsEachDriveAlone) {

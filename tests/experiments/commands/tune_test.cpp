@@ -119,6 +119,22 @@ TEST_F(Tune, FindsOneWhereTheNoiseIsRight) {
   expect_holds(factors[1], 1.0);
 }
 
+/// The value of an option in "Write motion_noise=2.057 sensor_noise=1.028".
+double written(const std::string& output, const std::string& option) {
+  const std::size_t at = output.find(" " + option + "=", output.find("\nWrite "));
+  return at == std::string::npos ? 0.0 : std::stod(output.substr(at + option.size() + 2));
+}
+
+// The factors multiply the noise of the cell as it is. What is written is the noise of [belief].
+TEST_F(Tune, MultipliesTheNoiseThatTheCellHasAlready) {
+  const Called called = tune({"cells.cell=ekf_slam motion_noise=0.5"});
+  const auto factors = factors_in(called.out, "all");
+  ASSERT_EQ(factors.size(), 2U) << called.err;
+  expect_holds(factors[0], 2.0);
+  EXPECT_NEAR(written(called.out, "motion_noise") / factors[0].value, 0.5, 0.005);
+  EXPECT_NEAR(written(called.out, "sensor_noise") / factors[1].value, 1.0, 0.01);
+}
+
 TEST_F(Tune, SaysTheSameOnAnyNumberOfThreads) {
   const auto output = [&](const std::vector<std::string>& how) {
     static const std::regex time(R"( +[0-9.]+\n)");
@@ -135,13 +151,13 @@ TEST_F(Tune, LeavesAFactorWithoutInfluenceAsItIs) {
                               "scenario.start_sigma_m=0", "scenario.start_sigma_deg=0"});
   ASSERT_EQ(called.code, 0) << called.err;
   ASSERT_EQ(factors_in(called.out, "all").size(), 1U) << called.out;
-  EXPECT_THAT(called.out, HasSubstr("does not depend on sensor_noise"));
+  EXPECT_THAT(called.out, HasSubstr("does not depend on the noise of sensor"));
 }
 
 TEST_F(Tune, WritesTheLandscapeAndTheConfirmingStudy) {
   const Called called = tune({"study.runs=24"}, {"-o", "found"});
   ASSERT_EQ(called.code, 0) << called.err;
-  EXPECT_THAT(text_of("found/landscape.csv"), testing::StartsWith("motion_noise,sensor_noise,"));
+  EXPECT_THAT(text_of("found/landscape.csv"), testing::StartsWith("motion_factor,sensor_factor,"));
   EXPECT_TRUE(exists("found/figures/landscape.svg"));
   EXPECT_EQ(
       call({"gate", "found/confirmation.h5", "--cell", "ekf_slam_tuned", "--within", "9"}).code, 0);
@@ -170,7 +186,7 @@ TEST_F(Tune, TakesNoFailureForAScore) {
   const Called called = tune({"study.runs=19", "belief.map=estimated", "scenario.start_sigma_m=0",
                               "scenario.start_sigma_deg=0", "association.kind=nearest",
                               "association.most_landmarks=1"});
-  EXPECT_THAT(called.err, HasSubstr("its score has no minimum near motion_noise x 1"));
+  EXPECT_THAT(called.err, HasSubstr("its score has no minimum near a factor of 1.00 on motion"));
   EXPECT_THAT(called.err, HasSubstr("the filter fails near by"));
 }
 

@@ -45,7 +45,7 @@ class LandmarkGraph(Scripts):
         upper = [float(one) for one in INFORMATION.ravel()[list(order)]]
         text = "".join(line(pose, 10 * (k + 1), *one) for k, one in enumerate(self.poses))
         text += "".join(line("VERTEX_XY", one, *place) for one, place in LANDMARKS.items())
-        text += "FIX 10\n"
+        text += "FIX 10\nPARAMS_SE2OFFSET 0 0 0 0\n"
         for k, step in enumerate(STEPS):
             ids = (10 * (k + 2), 10 * (k + 1)) if is_swapped else (10 * (k + 1), 10 * (k + 2))
             text += line(motion, *ids, *step, *upper)

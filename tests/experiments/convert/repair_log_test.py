@@ -55,6 +55,14 @@ class RepairLog(Scripts):
         self.assertEqual(self.bytes_of("new")["detections.csv"],
                          (header + "1,5,0.1\n1,6,0.1\n2,,\n").encode())
 
+    def test_takes_one_start(self):
+        self.write("start.csv", START + "1,0,0,0.1\n")
+        self.expect_refused(repair_log, ["start.csv:3", "another start"], **self.arguments)
+        self.write("start.csv", START + START.splitlines()[1] + "\n")
+        self.assertIn("start.csv: 1 rows; 1 equal to another",
+                      self.converted(repair_log, **self.arguments))
+        self.assertEqual(self.bytes_of("new")["start.csv"], START.encode())
+
     def test_refuses_what_it_cannot_repair(self):
         self.write("odometry.csv", ODOMETRY + "0,1,0\n2,1,0\n1,1,0\n")
         self.expect_refused(repair_log, ["odometry.csv:4", "too late", "--sort-within"],

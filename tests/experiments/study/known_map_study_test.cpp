@@ -42,6 +42,13 @@ TEST(KnownMap, IsRefusedWithAFilterThatCannotTakeIt) {
                 AllOf(HasSubstr(std::string(cell) + " with belief.map = known"),
                       HasSubstr("use one of ekf_slam, riekf_slam, ukf_slam, fastslam1")));
   }
+  for (const FilterKind& kind : known_filters()) {
+    if (kind.takes_prior || kind.name == "external") continue;
+    EXPECT_THAT(complaint(kKnownMap, {"cells.cell=" + kind.name}),
+                AllOf(HasSubstr(kind.name + " with belief.map = known (it"),
+                      Not(HasSubstr("cannot be started"))))
+        << "the reason why is missing";
+  }
   EXPECT_EQ(complaint(kKnownMap, {"cells.cell=ukf_slam"}), "nothing");
 }
 
