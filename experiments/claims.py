@@ -282,8 +282,7 @@ class Ledger:
         return self.studies[name]
 
     def check_metric(self, metric, path):
-        column = metric.removeprefix(printed.VARIANCE_OF)
-        if column not in self.metrics and not printed.BAND_METRIC.match(metric):
+        if not set(printed.columns_of(metric)) <= self.metrics:
             raise PrintedError(f"{path}: there is no metric '{metric}': correct it")
 
     def printed_rows(self, page):

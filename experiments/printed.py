@@ -14,16 +14,18 @@ The .printed file beside a study has one statement per line:
     value = cell=srcd metric=position_rmse printed=2.8211 note="Table 1"
     value = cell=ufastslam metric=cpu_seconds printed=1.82 relative_to=fastslam2 note="Table 3"
     claim = position_rmse srcd < ufastslam note="Fig. 3"
+    claim = cpu_seconds srcd_m100 < 10*srcd_m10 note="Table 2"
     assume = Loops: the paper does not say; two.
 
 A note that begins with "not in the paper" marks a comparison of our own. --lead FILE writes three
 sentences to FILE: what the paper says, what was found, and how sure that is. Cells are named by
-their labels. A metric is a column of runs.csv; in a claim also variance_of_COLUMN, its variance
-between runs, of which the interval is linearised; or share_inside_BLOCK, share_above_BLOCK or
-stays_above_from_BLOCK (pose, position, heading), which compare the average NEES of all runs with a
-band: that of the paper, or else the chi-square band for the number of runs. These metrics depend on
-the number of runs, so they are computed for every BATCH, a folder that `analyze --csv` wrote for a
-part of the study with as many runs as in the paper. Needs NumPy and SciPy.
+their labels. A metric is a column of runs.csv, or COLUMN-COLUMN, the difference of two; in a claim
+also variance_of_COLUMN, its variance between runs, of which the interval is linearised; or
+share_inside_BLOCK, share_above_BLOCK or stays_above_from_BLOCK (pose, position, heading), which
+compare the average NEES of all runs with a band: that of the paper, or else the chi-square band for
+the number of runs. These metrics depend on the number of runs, so they are computed for every
+BATCH, a folder that `analyze --csv` wrote for a part of the study with as many runs as in the
+paper. Needs NumPy and SciPy.
 """
 import argparse
 import csv
@@ -46,6 +48,8 @@ OURS = "not in the paper"  # so begins the note of a comparison of our own
 REPRODUCED_WITHIN = 2.0  # a number that is off by more than this factor is not reproduced
 ALIKE_WITHIN = 0.1  # cells are alike if they differ by less than this share of their mean
 VARIANCE_OF = "variance_of_"  # before a column of runs.csv
+# The right side of a claim: a number, or the label of a cell, perhaps times a factor.
+RIGHT_SIDE = re.compile(r"(?P<number>[0-9.]+(e-?[0-9]+)?)$|((?P<factor>[0-9.]+)\*)?(?P<label>.+)")
 BAND_METRIC = re.compile("(share_inside|share_above|stays_above_from)_(pose|position|heading)$")
 DIMENSIONS = {"pose": 3, "position": 2, "heading": 1}
 
@@ -99,12 +103,17 @@ def claim_of(text):
     words = shlex.split(text)
     if len(words) not in (4, 5) or words[2] not in ("<", ">", "~") or (
             len(words) == 5 and not words[4].startswith("note=")):
-        raise ValueError("write claim = METRIC LABEL < LABEL [note=\"...\"] (or >, ~)")
-    if words[2] == "~" and BAND_METRIC.match(words[0]):
-        raise ValueError(f"~ has no meaning for {words[0]}: claim < or >")
-    note = words[4].removeprefix("note=") if len(words) == 5 else ""
-    return {"metric": words[0], "left": words[1], "relation": words[2], "right": words[3],
-            "note": note}
+        raise ValueError("write claim = METRIC LABEL < LABEL [note=\"...\"] (or >, ~; a number, or "
+                         "FACTOR*LABEL, may stand on the right)")
+    right = RIGHT_SIDE.match(words[3])
+    of_bands = BAND_METRIC.match(words[0])
+    if of_bands and (words[2] == "~" or right["number"] or right["factor"]):
+        raise ValueError(f"this has no meaning for {words[0]}: claim LABEL < or > LABEL")
+    claim = {"metric": words[0], "left": words[1], "relation": words[2], "against": words[3],
+             "note": words[4].removeprefix("note=") if len(words) == 5 else ""}
+    if right["number"]:
+        return claim | {"number": float(right["number"])}
+    return claim | {"right": right["label"], "factor": float(right["factor"] or 1.0)}
 
 
 def band_of(text):
@@ -174,6 +183,13 @@ def table_of(folder, name):
     return [dict(zip(names, row)) for row in rows[1:]]
 
 
+def columns_of(metric):
+    """The columns of runs.csv that a metric is made of: none of a band, two of a difference."""
+    if BAND_METRIC.match(metric):
+        return []
+    return metric.removeprefix(VARIANCE_OF).split("-", 1)
+
+
 class Measured:
     """The tables of a folder that `analyze --csv` wrote."""
 
@@ -190,14 +206,16 @@ class Measured:
                 raise PrintedError(f"{self.folder}: there is no cell '{label}': correct the label "
                                    f"(there are {', '.join(self.labels)})")
         known = [name for rows in self.runs.values() for row in rows.values() for name in row]
-        column = metric.removeprefix(VARIANCE_OF)
-        if not BAND_METRIC.match(metric) and known and column not in known:
-            raise PrintedError(f"{self.folder}/runs.csv: there is no column '{metric}': correct "
-                               "the metric")
+        for column in columns_of(metric):
+            if known and column not in known:
+                raise PrintedError(f"{self.folder}/runs.csv: there is no column '{column}': "
+                                   "correct the metric")
 
     def scores(self, label, metric):
         """The metric {run} of the complete runs; NaN if a run has no such number."""
-        return {run: float(row[metric] or "nan") for run, row in self.runs[label].items()}
+        first, *subtracted = columns_of(metric)
+        return {run: float(row[first] or "nan") - sum(float(row[s] or "nan") for s in subtracted)
+                for run, row in self.runs[label].items()}
 
     def by_band(self, label, metric, printed_bands):
         """A band metric, i.e. a share of scans or a time [s], of the average NEES of all runs."""
@@ -250,13 +268,22 @@ def interval_of(values):
 def paired(measured, left, right, metric):
     """The metric {run, (left, right)} of the runs that both cells completed. Of a variance these
     are squared deviations, whose mean it is."""
-    column = metric.removeprefix(VARIANCE_OF)
-    l, r = measured.scores(left, column), measured.scores(right, column)
+    l, r = measured.scores(left, metric), measured.scores(right, metric)
     pairs = np.array([(l[run], r[run]) for run in sorted(l.keys() & r.keys())]).reshape(-1, 2)
     pairs = pairs[np.isfinite(pairs).all(1)]
-    if column == metric or not len(pairs):
+    if not metric.startswith(VARIANCE_OF) or not len(pairs):
         return pairs
     return (pairs - pairs.mean(0)) ** 2 * (len(pairs) / max(len(pairs) - 1, 1))
+
+
+def sides(measured, claim):
+    """The left and the right side of a claim {run, (left, right)}."""
+    pairs = paired(measured, claim["left"], claim.get("right", claim["left"]), claim["metric"])
+    if "number" in claim:
+        pairs[:, 1] = claim["number"]
+    else:
+        pairs[:, 1] *= claim["factor"]
+    return pairs
 
 
 def judge_value(value, printed, measured, batches):
@@ -314,10 +341,11 @@ def another_world(value, printed, measured, batches):
 
 def judge_claim(claim, printed, measured, batches):
     """Tests a claim: (left minus right, its interval or None, verdict)."""
-    metric, left, right, relation = (claim[key] for key in ("metric", "left", "right", "relation"))
+    relation = claim["relation"]
     sign = -1.0 if relation == "<" else 1.0
-    if BAND_METRIC.match(metric):
-        pairs = [[b.by_band(label, metric, printed["band"]) for label in (left, right)]
+    if BAND_METRIC.match(claim["metric"]):
+        pairs = [[b.by_band(claim[side], claim["metric"], printed["band"])
+                  for side in ("left", "right")]
                  for b in batches or [measured]]
         if np.isnan(pairs).any():
             return math.nan, None, "not measured"
@@ -331,7 +359,7 @@ def judge_claim(claim, printed, measured, batches):
                    f"contradicted in {n} of {n} batches" if fails == n else
                    f"undecided: holds in {holds} of {n} batches, contradicted in {fails}")
         return np.median(differences), None, verdict
-    pairs = paired(measured, left, right, metric)
+    pairs = sides(measured, claim)
     if not len(pairs):
         return math.nan, None, "not measured"
     differences = pairs[:, 0] - pairs[:, 1]
@@ -359,7 +387,7 @@ def name_of_value(value):
 
 
 def name_of_claim(claim):
-    return f"{claim['metric']}: {claim['left']} {claim['relation']} {claim['right']}"
+    return f"{claim['metric']}: {claim['left']} {claim['relation']} {claim['against']}"
 
 
 def number_text(number):
@@ -389,7 +417,7 @@ def judged(printed, measured, batches):
     for value in printed["value"]:
         measured.check(value["metric"], value["cell"], value.get("relative_to", value["cell"]))
     for claim in printed["claim"]:
-        measured.check(claim["metric"], claim["left"], claim["right"])
+        measured.check(claim["metric"], claim["left"], claim.get("right", claim["left"]))
     values = []
     for value in printed["value"]:
         mean, interval, verdict = judge_value(value, printed, measured, batches)
@@ -407,11 +435,12 @@ def counted(number, noun):
 
 
 def claim_in_words(claim):
-    relation = {"<": "is less than that of", ">": "is greater than that of",
-                "~": "differs by less than 10 % from that of"}[claim["relation"]]
+    relation = {"<": "is less than", ">": "is greater than",
+                "~": "differs by less than 10 % from"}[claim["relation"]]
+    of = "" if "number" in claim else "that of "
     where = f" ({claim['note']})" if claim["note"] else ""
-    metric = claim["metric"].replace("_", " ")
-    return f"the {metric} of {claim['left']} {relation} {claim['right']}{where}"
+    metric = claim["metric"].replace("_", " ").replace("-", " minus ")
+    return f"the {metric} of {claim['left']} {relation} {of}{claim['against']}{where}"
 
 
 def tally(judgements, *beginnings):

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Errors of the estimates, cost of a run, and numbers of arithmetic fallbacks.
 #include "analysis/run/measured_run.hpp"
+#include "analysis/statistics/spread.hpp"
 #include "analysis/study/boxes.hpp"
 #include "analysis/study/cell_report.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace montecarta::analysis {
@@ -33,6 +36,22 @@ double position_mean(const MeasuredRun& run) {
   return mean_root(run, run.metrics.squared_position());
 }
 
+/// Mean position error in a quarter of the scans, the first of which is quarter 0.
+template <std::size_t kQuarter>
+double position_mean_in_quarter(const MeasuredRun& run) {
+  const std::span<const double> squares = run.metrics.squared_position();
+  const std::size_t from = kQuarter * squares.size() / 4;
+  const std::size_t to = (kQuarter + 1) * squares.size() / 4;
+  return mean_root(run, squares.subspan(from, to - from));
+}
+
+double position_median(const MeasuredRun& run) {
+  std::vector<double> squares = run.metrics.squared_position();
+  if (run.rows.error.components() > 0)
+    std::erase_if(squares, [](double square) { return !std::isfinite(square); });
+  return squares.empty() ? kNaN : std::sqrt(median_of(std::move(squares)));
+}
+
 double heading_mse(const MeasuredRun& run) {
   return over_scans(run, run.metrics.squared_heading());
 }
@@ -47,6 +66,15 @@ constexpr Score kErrorsScores[] = {
        const double mean = position_mean(run);
        return position_mse(run) - mean * mean;
      }},
+    {"position_error_median", "m", "median position error over time", position_median},
+    {"position_error_quarter1", "m", "mean position error in the first quarter of the scans",
+     position_mean_in_quarter<0>},
+    {"position_error_quarter2", "m", "mean position error in the second quarter of the scans",
+     position_mean_in_quarter<1>},
+    {"position_error_quarter3", "m", "mean position error in the third quarter of the scans",
+     position_mean_in_quarter<2>},
+    {"position_error_quarter4", "m", "mean position error in the last quarter of the scans",
+     position_mean_in_quarter<3>},
     {"heading_rmse", "rad", "heading RMSE",
      [](const MeasuredRun& run) { return std::sqrt(heading_mse(run)); }},
     {"heading_mse", "rad2", "heading MSE", heading_mse},

@@ -28,6 +28,8 @@ double of_map(const MeasuredRun& run) {
 
 constexpr Score kMapScores[] = {
     {"landmark_rms", "m", "RMS error of the landmarks in the final map", of_map<&MapScores::rms>},
+    {"landmark_deviation", "m", "RMS deviation that the filter claims of these landmarks",
+     of_map<&MapScores::deviation>},
     {"landmark_nees", "1", "NEES of a landmark in the final map, mean over landmarks",
      of_map<&MapScores::nees>},
     {"gospa", "m", "GOSPA of the final map", of_map<&Gospa::distance>},

@@ -103,12 +103,13 @@ LandmarkScore score(const Eigen::Vector2d& error, const Eigen::Matrix2d& covaria
 void score_by_identity(const FinalMap& map, std::span<const Eigen::Vector2d> landmarks,
                        MapScores& scores) {
   scores.landmarks.resize(landmarks.size());
-  double squares = 0.0, nees = 0.0, n = 0.0, n_nees = 0.0;
+  double squares = 0.0, traces = 0.0, nees = 0.0, n = 0.0, n_nees = 0.0;
   for (std::size_t l = 0; l < scores.landmarks.size() && l < map.seen.size(); ++l) {
     if (map.seen[l] == 0) continue;
     const LandmarkScore one = score(map.mean[l] - landmarks[l], map.covariance[l]);
     scores.landmarks[l] = one;
     squares += one.squared_error;
+    traces += map.covariance[l].trace();
     n += 1.0;
     if (!std::isfinite(one.nees)) {
       ++scores.undefined;
@@ -117,7 +118,10 @@ void score_by_identity(const FinalMap& map, std::span<const Eigen::Vector2d> lan
     nees += one.nees;
     n_nees += 1.0;
   }
-  if (n > 0.0) scores.rms = std::sqrt(squares / n);
+  if (n > 0.0) {
+    scores.rms = std::sqrt(squares / n);
+    scores.deviation = std::sqrt(traces / n);
+  }
   if (n_nees > 0.0) scores.nees = nees / n_nees;
 }
 

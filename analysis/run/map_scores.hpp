@@ -59,6 +59,8 @@ struct MapScores {
   Gospa gospa;
   /// [m] RMS position error of the landmarks in the map; NaN without identities.
   double rms = kNaN;
+  /// [m] root of the mean trace of the covariances that the filter has of them.
+  double deviation = kNaN;
   double nees = kNaN;                    ///< [1] mean NEES of the landmarks that have one
   std::size_t undefined = 0;             ///< number of landmarks in the map that have no NEES
   std::vector<LandmarkScore> landmarks;  ///< {landmark}; empty where identities are unknown

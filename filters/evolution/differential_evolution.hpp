@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -107,6 +108,8 @@ struct SearchBox {
 /// The member from which a trial starts: DE/best/1 (Ankishan), DE/rand/1 (Havangi eq. 6) or
 /// DE/current/1 (Havangi eq. 30, where only selection favours the best member).
 enum class EvolutionBase { best, random, target };
+/// Their names in options, in the order of the enumerators.
+inline const std::vector<std::string> kEvolutionBases{"best", "random", "target"};
 
 struct EvolutionSettings {
   double scale = 0.5;                          ///< F: factor of the difference of two members

@@ -10,6 +10,7 @@ namespace {
 
 /// The order is that of the enumerators.
 const std::vector<std::string> kEvolutionModes{"unbiased", "as_printed", "prior", "shared"};
+const std::vector<std::string> kEvolutionStarts{"cloud", "uniform"};
 
 std::vector<Parameter> options_of_evolution() {
   return {
@@ -22,6 +23,10 @@ std::vector<Parameter> options_of_evolution() {
       count_parameter("population", "10", 7, 1000,
                       "size of the population that each particle has in mode unbiased; in other "
                       "modes the particles are the population"),
+      choice_parameter("base", "best", kEvolutionBases, "base of a trial (EQUATIONS 9)"),
+      choice_parameter("start", "cloud", kEvolutionStarts,
+                       "first population where the particles are one: their poses, or poses drawn "
+                       "uniformly within the bounds, Ankishan eq. (28) (EQUATIONS 10)"),
       number_parameter("bounds", "3", 0, 100, "bounds of the search in standard deviations"),
       number_parameter("inflation", "1", 1, 10,
                        "factor on the covariance of the proposal, in modes unbiased and shared")};
@@ -34,7 +39,8 @@ EvolvedSettings evolved_settings(const FilterOptions& options) {
           .evolution = {.scale = options.number("scale"),
                         .crossover = options.number("crossover"),
                         .generations = options.integer("generations"),
-                        .base = EvolutionBase::best},
+                        .base = chosen<EvolutionBase>(options.choice("base"), kEvolutionBases)},
+          .start = chosen<EvolutionStart>(options.choice("start"), kEvolutionStarts),
           .population = options.integer("population"),
           .bounds = options.number("bounds"),
           .inflation = options.number("inflation")};

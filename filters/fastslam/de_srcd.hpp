@@ -26,6 +26,7 @@ inline WeightTime weight_time(EvolutionMode mode) {
 struct EvolvedSettings {
   EvolutionMode mode = EvolutionMode::unbiased;
   EvolutionSettings evolution = {.scale = 0.4, .base = EvolutionBase::best};
+  EvolutionStart start = EvolutionStart::cloud;
   std::size_t population = 10;  ///< members per particle in mode unbiased, at least 7
   double bounds = 3.0;          ///< bounds of the search, in standard deviations
   double inflation = 1.0;       ///< factor of the covariance of draws that are weighted by (6.3)
@@ -69,7 +70,7 @@ class EvolvedProposal : public RefinedCloud<Real, SigmaPoints, SigmaPoints> {
                                ? CloudEvolution<Real>::Objective::likelihood
                                : CloudEvolution<Real>::Objective::posterior;
     cloud_.gather(context, association, weights, predicted, this->noise());
-    report_.add(cloud_.evolve(objective, settings_.bounds, settings_.evolution,
+    report_.add(cloud_.evolve(objective, settings_.bounds, settings_.start, settings_.evolution,
                               context.identity(Draw::evolution, 0), centres_));
   }
 

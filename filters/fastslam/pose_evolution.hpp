@@ -240,6 +240,10 @@ class OwnEvolution {
   EvolutionScratch<Real, 3> scratch_;
 };
 
+/// The first population where the particles are one: their predicted poses, or poses drawn
+/// uniformly within the bounds of the search (Ankishan (28)).
+enum class EvolutionStart { cloud, uniform };
+
 /// Evolves the cloud of predicted poses as one population (Ankishan 3.2, Fig. 1): member i is
 /// particle i, and its fitness is evaluated with the map of particle i. Components are those along,
 /// across and about the mean heading of the cloud, so that a rotated world evolves alike.
@@ -274,16 +278,20 @@ class CloudEvolution {
 
   /// Evolves within `bounds` standard deviations of the cloud; replaces the predicted `poses` by
   /// the resulting ones.
-  EvolutionEffect evolve(Objective objective, double bounds, const EvolutionSettings& settings,
-                         const StreamIdentity& identity, std::vector<BasicPose<Real>>& poses) {
+  EvolutionEffect evolve(Objective objective, double bounds, EvolutionStart start,
+                         const EvolutionSettings& settings, const StreamIdentity& identity,
+                         std::vector<BasicPose<Real>>& poses) {
     const auto evaluate = [&](Members members, std::span<double> fitness) {
       for (std::size_t b = 0; b < fitness_.size(); ++b) {
         const Real fit = fitness_of_block(objective, b, block_of_poses(members, b));
         for (std::size_t i = b * kLanes; i < end_of(b); ++i) fitness[i] = get(fit, i % kLanes);
       }
     };
-    const auto evolved = filters::evolve<double, 3>(population_, box(bounds), settings,
-                                                    EvolutionDraws{identity}, scratch_, evaluate);
+    const SearchBox<double, 3> within = box(bounds);
+    EvolutionDraws draws{identity};
+    if (start == EvolutionStart::uniform) scatter(within, draws);
+    const auto evolved =
+        filters::evolve<double, 3>(population_, within, settings, draws, scratch_, evaluate);
     double way = 0.0;
     for (std::size_t b = 0; b < poses.size(); ++b) {
       const BasicPose<Real> before = std::exchange(poses[b], block_of_poses(population_, b));
@@ -296,6 +304,16 @@ class CloudEvolution {
  private:
   static constexpr std::size_t kLanes = kLanesOf<Real>;
   using Members = std::span<const std::array<double, 3>>;
+
+  /// Draws all members uniformly within the box, Ankishan eq. (28).
+  void scatter(const SearchBox<double, 3>& box, EvolutionDraws& draws) {
+    for (std::array<double, 3>& member : population_) {
+      const auto [first, second] = uniform_pairs(draws.identity, draws.first_block++, 0.0);
+      const auto third = uniform_pairs(draws.identity, draws.first_block++, 0.0).first;
+      member = {(2.0 * first - 1.0) * box.half[0], (2.0 * second - 1.0) * box.half[1],
+                (2.0 * third - 1.0) * box.half[2]};
+    }
+  }
 
   /// Index after the last particle of block b.
   std::size_t end_of(std::size_t b) const { return std::min((b + 1) * kLanes, population_.size()); }

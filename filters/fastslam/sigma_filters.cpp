@@ -3,6 +3,7 @@
 
 #include "filters/setup/filter_kind.hpp"
 
+#include <string>
 #include <utility>
 
 namespace montecarta::filters {
@@ -15,6 +16,18 @@ namespace {
 Parameter weights_of_sigma_points_option() {
   return choice_parameter("weights", "closed", {"closed", "ratio"},
                           "form of the importance weight (EQUATIONS 6)");
+}
+
+const std::vector<std::string> kNewLandmarks{"corrected", "as_printed"};
+
+Parameter new_landmarks_option() {
+  return choice_parameter("new_landmarks", "corrected", kNewLandmarks,
+                          "covariance of a new landmark; Ankishan eq. (24), (25) add the sensor's "
+                          "noise once more, in its own units (EQUATIONS 8)");
+}
+
+NewLandmarks new_landmarks(const FilterOptions& options) {
+  return chosen<NewLandmarks>(options.choice("new_landmarks"), kNewLandmarks);
 }
 
 }  // namespace
@@ -38,13 +51,14 @@ std::vector<Parameter> central_difference_options() {
               "whether the misprints of Ankishan eq. (14) about the central point are corrected")};
 }
 
-SigmaPoints central_difference_points(const FilterSetup& setup, MapUncertainty map_uncertainty) {
+SigmaPoints central_difference_points(const FilterSetup& setup, MapUncertainty map_uncertainty,
+                                      NewLandmarks new_landmarks) {
   const double h = setup.options.number("interval");
   const bool corrected = setup.options.choice("weights_of_sigma_points") == "corrected";
   const SigmaRule rule =
       corrected ? central_difference_rule(h) : central_difference_rule_as_printed(h);
   return SigmaPoints({.motion = rule, .pose = rule, .landmark = rule}, setup.belief,
-                     map_uncertainty);
+                     map_uncertainty, new_landmarks);
 }
 
 SigmaPoints unscented_points(const FilterSetup& setup) {
@@ -82,10 +96,11 @@ FilterKind srcd_kind() {
       refined_kind("srcd", "SRCD-FastSLAM", "Ankishan et al. 2016; EQUATIONS 8",
                    population_options({{weights_of_sigma_points_option()},
                                        central_difference_options(),
-                                       {map_uncertainty_option()}}),
+                                       {map_uncertainty_option(), new_landmarks_option()}}),
                    [](const FilterSetup& setup) {
                      return make_refined_of_sensor<Lanes>(
-                         setup, central_difference_points(setup, map_uncertainty(setup.options)));
+                         setup, central_difference_points(setup, map_uncertainty(setup.options),
+                                                          new_landmarks(setup.options)));
                    }));
 }
 
@@ -98,7 +113,10 @@ FilterKind srcd_aided_kind() {
 
 FilterKind srcd_pf_kind() {
   return refined_kind("srcd_pf", "SRCD-PF FastSLAM", "Ankishan et al. 2016, Table 1; EQUATIONS 8",
-                      srcd_kind().options, make_srcd_pf<Lanes>);
+                      population_options({{weights_of_sigma_points_option()},
+                                          central_difference_options(),
+                                          {map_uncertainty_option()}}),
+                      make_srcd_pf<Lanes>);
 }
 
 }  // namespace montecarta::filters

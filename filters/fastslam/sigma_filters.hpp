@@ -17,7 +17,8 @@ MapUncertainty map_uncertainty(const FilterOptions& options);
 /// Interval and weights of central differences (EQUATIONS 3) for every stage; `map_uncertainty`
 /// only affects the pose.
 std::vector<Parameter> central_difference_options();
-SigmaPoints central_difference_points(const FilterSetup& setup, MapUncertainty map_uncertainty);
+SigmaPoints central_difference_points(const FilterSetup& setup, MapUncertainty map_uncertainty,
+                                      NewLandmarks new_landmarks = NewLandmarks::corrected);
 /// The scaled unscented transform of every stage (EQUATIONS 7), with 5 dimensions for a motion with
 /// two controls (pose, control) and for an observation (pose, landmark), and 2 for a landmark.
 SigmaPoints unscented_points(const FilterSetup& setup);

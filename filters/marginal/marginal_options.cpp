@@ -14,7 +14,6 @@ const Names kModes{"onestep_converged", "onestep_threshold", "recursive"};
 const Names kSolvers{"gauss_newton", "de"};
 const Names kObjectives{"likelihood", "squares", "squares_as_printed"};
 const Names kSums{"direct", "ifgt"};
-const Names kBases{"best", "random", "target"};
 
 }  // namespace
 
@@ -53,7 +52,7 @@ std::vector<Parameter> marginal_options(MapSolver solver) {
       number_parameter("crossover", "0.8", 0, 1,
                        "with map_solver=de: crossover rate Cr (EQUATIONS 9)"),
       choice_parameter(
-          "base", "random", kBases,
+          "base", "random", kEvolutionBases,
           "with map_solver=de: base of a trial; Havangi eq. (6) has random, eq. (30) target"),
   };
 }
@@ -67,7 +66,7 @@ MapSettings map_settings(const FilterOptions& options) {
           .evolution = {.scale = options.number("scale"),
                         .crossover = options.number("crossover"),
                         .generations = options.integer("generations"),
-                        .base = chosen<EvolutionBase>(options.choice("base"), kBases)}};
+                        .base = chosen<EvolutionBase>(options.choice("base"), kEvolutionBases)}};
 }
 
 MarginalSettings marginal_settings(const FilterOptions& options, Choice choice) {

@@ -203,6 +203,10 @@ struct LandmarkObservation {
   }
 };
 
+/// The covariance of a new landmark: (8.3), or that of Ankishan (24), (25), to which R is added
+/// once more, as if range and bearing were x and y.
+enum class NewLandmarks { corrected, as_printed };
+
 /// Moments by sigma points: unscented transform or central differences (EQUATIONS 3).
 class SigmaPoints {
  public:
@@ -212,9 +216,12 @@ class SigmaPoints {
     SigmaRule pose;      ///< (pose, landmark): 5 dimensions
     SigmaRule landmark;  ///< a landmark, or (range, bearing): 2 dimensions
   };
-  SigmaPoints(const Rules& rules, const Belief& belief, MapUncertainty map_uncertainty)
+  /// `new_landmarks` matters to initialise() alone.
+  SigmaPoints(const Rules& rules, const Belief& belief, MapUncertainty map_uncertainty,
+              NewLandmarks new_landmarks = NewLandmarks::corrected)
       : rules_(rules),
         map_uncertainty_(map_uncertainty),
+        new_landmarks_(new_landmarks),
         ray_(direction_of(rules.landmark.spread * belief.sigma_bearing)) {}
 
   void advance(MotionIncrement& motion, const Control& control, double duration,
@@ -279,10 +286,15 @@ class SigmaPoints {
     const Real way = seen.first + rule.mean_weight * even;
     const Real along = noise.first + bend_weight(rule) * even * even;
     const Real across = rule.antisymmetric * odd * odd;
-    return {{pose.x + way * d.cosine, pose.y + way * d.sine},
-            {along * d.cosine * d.cosine + across * d.sine * d.sine,
-             (along - across) * d.cosine * d.sine,
-             along * d.sine * d.sine + across * d.cosine * d.cosine}};
+    LandmarkGaussian<Real> landmark{{pose.x + way * d.cosine, pose.y + way * d.sine},
+                                    {along * d.cosine * d.cosine + across * d.sine * d.sine,
+                                     (along - across) * d.cosine * d.sine,
+                                     along * d.sine * d.sine + across * d.cosine * d.cosine}};
+    if (new_landmarks_ == NewLandmarks::as_printed) {
+      landmark.covariance.xx += noise.first;
+      landmark.covariance.yy += noise.second;
+    }
+    return landmark;
   }
 
  protected:
@@ -292,6 +304,7 @@ class SigmaPoints {
  private:
   Rules rules_;
   MapUncertainty map_uncertainty_;
+  NewLandmarks new_landmarks_;
   Direction<double> ray_;  ///< (cos, sin)(spread sigma_bearing)
 };
 

@@ -18,13 +18,15 @@ class DeSrcd final : public Srcd {
   explicit DeSrcd(const FilterSetup& setup)
       : Srcd(setup, {}, "closed"),
         mode_(setup.options.choice("mode")),
+        starts_uniformly_(setup.options.choice("start") == "uniform"),
         population_(setup.options.integer("population")),
         bounds_(setup.options.number("bounds")),
         inflation_(setup.options.number("inflation")) {
-    evolution_.settings = {.scale = setup.options.number("scale"),
-                           .crossover = setup.options.number("crossover"),
-                           .generations = setup.options.integer("generations"),
-                           .base = EvolutionBase::best};
+    evolution_.settings = {
+        .scale = setup.options.number("scale"),
+        .crossover = setup.options.number("crossover"),
+        .generations = setup.options.integer("generations"),
+        .base = chosen<EvolutionBase>(setup.options.choice("base"), kEvolutionBases)};
   }
 
   const Evolution<3>& evolution() const { return evolution_; }
@@ -93,16 +95,25 @@ class DeSrcd final : public Srcd {
     half = bounds_ * (T * cloud.covariance * T.transpose()).diagonal().cwiseMax(0.0).cwiseSqrt();
     for (const Member& one : population) half = half.cwiseMax(one.cwiseAbs());
     half(2) = std::min(half(2), kPi);
+    std::uint32_t first_block = 0;
+    if (starts_uniformly_) {
+      for (Member& one : population) {
+        RngStream draw(context.identity(Draw::evolution, 0), first_block);
+        for (Eigen::Index j = 0; j < 3; ++j) one(j) = (2.0 * draw.uniform() - 1.0) * half(j);
+        first_block += 2;
+      }
+    }
     evolution_.last_is_an_angle = true;
     const auto at = [&](const Member& e) {
       return wrapped(to_vector(cloud.mean) + T.transpose() * e);
     };
-    evolution_.best_of(
-        population, context.identity(Draw::evolution, 0), 0, [&](std::size_t i, const Member& e) {
-          Particle& p = particles_[i];
-          return mode_ == "as_printed" ? log_printed(at(e), p, scan)
-                                       : log_posterior(at(e), p, p.pose, p.covariance, scan);
-        });
+    evolution_.best_of(population, context.identity(Draw::evolution, 0), first_block,
+                       [&](std::size_t i, const Member& e) {
+                         Particle& p = particles_[i];
+                         return mode_ == "as_printed"
+                                    ? log_printed(at(e), p, scan)
+                                    : log_posterior(at(e), p, p.pose, p.covariance, scan);
+                       });
     for (std::size_t i = 0; i < moved_.size(); ++i) moved_[i] = at(population[i]);
   }
 
@@ -139,6 +150,7 @@ class DeSrcd final : public Srcd {
   }
 
   std::string mode_;
+  bool starts_uniformly_;  ///< in modes other than unbiased
   std::size_t population_;
   double bounds_;     ///< of the search, in standard deviations
   double inflation_;  ///< of the covariance that poses are drawn from

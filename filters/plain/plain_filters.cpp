@@ -48,7 +48,7 @@ const std::vector<PlainFilter>& all_plain() {
       {"fastslam1", make_plain<plain::FastSlam1>, {}},
       {"fastslam2", make_plain<plain::FastSlam2>, {}},
       {"ufastslam", make_plain<plain::UFastSlam>, {}},
-      {"srcd", make_plain_srcd<plain::SrcdParts{}>, {"weights_of_sigma_points"}},
+      {"srcd", make_plain_srcd<plain::SrcdParts{}>, {"weights_of_sigma_points", "new_landmarks"}},
       {"srcd_aided", make_plain_srcd<plain::SrcdParts{.pose = false}>, {"weights_of_sigma_points"}},
       {"srcd_pf", make_plain_srcd<plain::SrcdParts{.map = false}>, {"weights_of_sigma_points"}},
       {"de_srcd", make_plain<plain::DeSrcd>, {"weights_of_sigma_points"}},

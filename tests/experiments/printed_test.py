@@ -100,6 +100,26 @@ class Printed(unittest.TestCase):
                                ("a < c", "undecided"), ("a ~ b", "holds")):
             self.assertEqual(self.verdicts(f"claim = position_rmse {claim}", measured), [verdict])
 
+    def test_the_right_side_may_be_a_number_or_a_multiple(self):
+        measured = self.measured({"a": np.tile([2.0, 2.2, 2.1], 10),
+                                  "b": np.tile([1.0, 1.3, 1.15], 10)})
+        for claim, verdict in (("a < 2.5", "holds"), ("a > 2.5", "contradicted"),
+                               ("a < 3*b", "holds"), ("a < 1.5*b", "contradicted"),
+                               ("a ~ 2.1", "holds"), ("b < 1.15", "undecided")):
+            self.assertEqual(self.verdicts(f"claim = position_rmse {claim}", measured), [verdict])
+
+    def test_columns_are_subtracted(self):
+        measured = self.measured({"a": np.tile([2.0, 2.2, 2.1], 10),
+                                  "b": np.tile([1.0, 1.3, 1.15], 10)})
+        for rows in measured.runs.values():
+            for row in rows.values():
+                row["landmark_rms"] = "1.5"
+        for claim, verdict in (("a > b", "holds"), ("a > 0.3", "holds"), ("b > 0", "contradicted")):
+            text = f"claim = position_rmse-landmark_rms {claim}"
+            self.assertEqual(self.verdicts(text, measured), [verdict])
+        with self.assertRaisesRegex(printed.PrintedError, "no column 'none'"):
+            self.verdicts("claim = position_rmse-none a > b", measured)
+
     def test_a_variance_between_runs_is_compared(self):
         wave = (-1.0) ** np.arange(50) * np.linspace(0.5, 1.5, 50)
         measured = self.measured({"a": 5.0 + wave, "b": 9.0 + 3.0 * wave})

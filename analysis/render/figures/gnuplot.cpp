@@ -21,7 +21,7 @@ namespace {
 // All sizes are in pixels.
 constexpr double kCharacter = 7.8;  // width of most characters, in either font
 // Room beside a panel for the numbers and the label of its axis.
-constexpr double kAxisRoom = 76.0, kNarrowAxisRoom = 48.0;
+constexpr double kAxisRoom = 76.0, kNarrowAxisRoom = 56.0;
 constexpr double kRightRoom = 14.0, kHeading = 26.0, kTicks = 54.0, kGap = 18.0;
 constexpr std::size_t kMostColumns = 3;
 constexpr double kSingleHeight = 250.0, kUsualHeight = 160.0, kStripPitch = 22.0;

@@ -167,11 +167,13 @@ std::string markdown_section(const Section& section) {
   return tables.empty() ? "" : heading + tables;
 }
 
-/// The first figure over time as Markdown; empty if there is none.
+/// The figure that answers what the study asks, as Markdown: what its options change, if it varies
+/// any, or else the NEES ratio or the distance to a reference over time. Empty if there is none.
 std::string markdown_leading_figure(const std::vector<Section>& sections) {
   for (const Section& section : sections) {
     for (const Figure& figure : section.figures) {
-      if (figure.name == "anees" || figure.name == "reference_error")
+      if (figure.name.starts_with("sweep_") || figure.name == "anees" ||
+          figure.name == "reference_error")
         return markdown_figure(figure);
     }
   }

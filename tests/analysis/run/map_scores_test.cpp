@@ -119,6 +119,7 @@ TEST(MapErrors, GiveEveryRunItsScores) {
   EXPECT_DOUBLE_EQ(scores.column("gospa")[1], 5.0);
   EXPECT_EQ(scores.column("landmarks_missed")[1], 2.0);
   EXPECT_EQ(scores.column("landmark_rms")[1], 0.0);
+  EXPECT_DOUBLE_EQ(scores.column("landmark_deviation")[1], std::sqrt(0.5));
 }
 
 Points drawn(std::size_t n, double size, RngStream& draw) {

@@ -2,6 +2,7 @@
 #include "analysis/study/sweep.hpp"
 
 #include "analysis/render/figures/gnuplot.hpp"
+#include "analysis/render/page/page.hpp"
 #include "analysis/statistics/spread.hpp"
 #include "tests/analysis/reported.hpp"
 #include "tests/doubles/matchers.hpp"
@@ -109,6 +110,20 @@ TEST(SweepFigure, HasPointsWithIntervalsAtTheValues) {
   const std::string commands = gnuplot_chart(figure.chart, 900).commands;
   EXPECT_THAT(commands, HasSubstr("set xtics nomirror ('5' 0, '20' 1, '100' 2)"));
   EXPECT_THAT(commands, HasSubstr("title 'pf mode=one'"));
+}
+
+TEST(SweepFigure, LeadsTheSummaryOfAStudyThatVariesAnOption) {
+  const StudyAnalysis study = with_particles({"5", "20", "100"});
+  Section varied{"sweep", ""}, nees{"nees", ""};
+  varied.figures = {reported_figure(study, "sweep_particles")};
+  nees.figures = {varied.figures[0]};
+  nees.figures[0].name = "anees";
+  const auto page = [&](const std::vector<Section>& sections) {
+    return markdown_page(study, sections, {});
+  };
+  EXPECT_THAT(page({varied, nees}), HasSubstr("](figures/sweep_particles.svg)"));
+  EXPECT_THAT(page({varied, nees}), testing::Not(HasSubstr("](figures/anees.svg)")));
+  EXPECT_THAT(page({nees}), HasSubstr("](figures/anees.svg)"));
 }
 
 TEST(SweepTable, HasARowForEachCellOfACurve) {

@@ -118,6 +118,24 @@ TEST(SigmaObservation, InitialisesALandmarkAsFivePointsDo) {
   }
 }
 
+TEST(SigmaObservation, InitialisesALandmarkAsPrintedWithTheNoiseOnceMore) {
+  RngStream draw({.seed = 95, .purpose = Draw::test});
+  const RandomObservation c(draw);
+  const SigmaRule rule = central_difference_rule(kInterval);
+  Belief belief;
+  belief.sigma_bearing = std::sqrt(c.noise.second);
+  const auto initialised = [&](NewLandmarks new_landmarks) {
+    return SigmaPoints({rule, rule, rule}, belief, MapUncertainty::on, new_landmarks)
+        .initialise(c.pose.mean, c.seen, c.noise);
+  };
+  const auto corrected = initialised(NewLandmarks::corrected);
+  const auto printed = initialised(NewLandmarks::as_printed);
+  EXPECT_EQ(to_vector(printed.mean), to_vector(corrected.mean));
+  const Eigen::Matrix2d more = symmetric(printed.covariance) - symmetric(corrected.covariance);
+  const Eigen::Matrix2d R = Vector<2>(c.noise.first, c.noise.second).asDiagonal();
+  EXPECT_LT((more - R).norm(), 1e-12);
+}
+
 /// Noise so small that the models are linear within it.
 TEST(SigmaObservation, OnLinearModelsEveryTransformIsTheKalmanFilter) {
   RngStream draw({.seed = 84, .purpose = Draw::test});
