@@ -49,7 +49,7 @@ std::vector<FilterKind> all_kinds() {
   for (const auto& make : added_filters()) {
     FilterKind kind = make();
     if (std::ranges::find(kinds, kind.name, &FilterKind::name) != kinds.end())
-      throw StudyError("filter " + kind.name + ": there is one already: give yours another name");
+      throw StudyError("filter {}: there is one already: give yours another name", kind.name);
     kinds.push_back(std::move(kind));
   }
   return kinds;

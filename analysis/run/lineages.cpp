@@ -19,9 +19,8 @@ void expect_parents(std::span<const std::uint32_t> parents) {
   std::uint32_t largest = 0;
   for (const std::uint32_t parent : parents) largest = std::max(largest, parent);
   if (largest < parents.size()) return;
-  throw RunError("ancestor: parent " + std::to_string(largest) + " of " +
-                 std::to_string(parents.size()) +
-                 " particles (the column is damaged): run the study again");
+  throw RunError("ancestor: parent {} of {} particles (the column is damaged): run the study again",
+                 largest, parents.size());
 }
 
 }  // namespace

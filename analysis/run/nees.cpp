@@ -99,7 +99,7 @@ std::optional<Whitened<D>> whitened(const Vec<D>& error, const Mat<D>& covarianc
   return found;
 }
 
-/// e' P^-1 e; nullopt if P is singular.
+/// The NEES e' P^-1 e, (2.1) of STATISTICS; nullopt if P is singular.
 template <int D>
 std::optional<double> quadratic_form(const Vec<D>& error, const Mat<D>& covariance,
                                      const Vec<D>& least_variance) {

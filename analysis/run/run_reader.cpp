@@ -3,6 +3,7 @@
 
 #include "analysis/run/study_facts.hpp"
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "engine/text/number_text.hpp"
 
 #include <algorithm>
@@ -33,7 +34,7 @@ JudgedScans judged_scans_of(const ResultFile& file) {
   judged.first =
       static_cast<std::size_t>(std::ranges::lower_bound(times, judged.from) - times.begin());
   const std::string problem =
-      file.path().string() + ": study.judge_from = " + compact(judged.from) + " s ";
+      formatted("{}: study.judge_from = {} s ", file.path(), compact(judged.from));
   if (!file.description().drives.empty()) {
     throw StudyError(problem + "of drives that have times of their own: choose another file");
   }
@@ -178,10 +179,10 @@ void RunReader::read_scans(std::string_view column, std::size_t width, std::size
                            std::vector<Number>& out) const {
   if (!has(column, i)) return out.clear();
   if (cell_->find(column)->axes.front() != engine::Axis::scan) {
-    throw StudyError(file_->path().string() + ": cells/" + cell_->label + "/" +
-                     std::string(column) +
-                     " has other axes than it should (the file is damaged): take a copy that is "
-                     "whole, or run the study again");
+    throw StudyError(
+        "{}: cells/{}/{} has other axes than it should (the file is damaged): take a copy that is "
+        "whole, or run the study again",
+        file_->path(), cell_->label, column);
   }
   out.resize(file_->scan_times().size() * width);
   file_->read(*cell_, column, i, std::span(out));
@@ -193,10 +194,10 @@ void RunReader::expect_particles(const RunRows& rows) const {
   std::uint32_t largest = 0;
   for (const std::uint32_t parent : rows.ancestor) largest = std::max(largest, parent);
   if (rows.ancestor.empty() || largest < cell_->particles) return;
-  throw StudyError(file_->path().string() + ": cell '" + cell_->label + "', run " +
-                   std::to_string(rows.run) +
-                   ": an ancestor is none of the particles (the file is damaged): run the study "
-                   "again");
+  throw StudyError(
+      "{}: cell '{}', run {}: an ancestor is none of the particles (the file is damaged): run the "
+      "study again",
+      file_->path(), cell_->label, rows.run);
 }
 
 void RunReader::read_particles(std::size_t i, RunRows& rows) const {

@@ -53,8 +53,8 @@ struct AssociationRows {
   std::vector<double> correct, wrong, new_again, missed, clutter;
 };
 
-/// What differential evolution did at every scan (EQUATIONS (9.3)); empty where not stored. 0 where
-/// nothing evolved.
+/// Progress of differential evolution at every scan (EQUATIONS (9.3)); 0 where nothing evolved, and
+/// empty where it is not stored.
 struct EvolutionRows {
   /// {scan} evaluations of the fitness; means over the populations of the others.
   std::vector<double> evaluations, generations, gain, displacement;
@@ -107,7 +107,7 @@ struct RunRows {
   std::vector<double> earlier_truth;
   MomentRows spread;  ///< mean always stored, except in files of states that are no poses
   MomentRows mixture;
-  std::vector<double> ess;               ///< {scan} effective sample size
+  std::vector<double> ess;               ///< {scan} column `ess`
   std::vector<std::uint32_t> resampled;  ///< {scan} 1 if the filter resampled at the scan, else 0
   /// {scan} number of factorisations that needed a fallback.
   std::vector<std::uint32_t> numerical_faults;

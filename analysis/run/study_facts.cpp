@@ -37,15 +37,15 @@ double number_in(const std::string& text) {
 double margin_from(const std::string& text) {
   const double margin = number_in(text);
   if (margin >= kLeastMargin && margin <= kMostMargin) return margin;
-  throw StudyError("study.within = " + text +
-                   " (a ratio from 1.001 to 100 is needed): choose another file");
+  throw StudyError("study.within = {} (a ratio from 1.001 to 100 is needed): choose another file",
+                   text);
 }
 
 double time_from(const std::string& text) {
   const double time = number_in(text);
   if (std::isfinite(time)) return time;
-  throw StudyError("study.judge_from = " + text +
-                   " (a time in seconds is needed): choose another file");
+  throw StudyError("study.judge_from = {} (a time in seconds is needed): choose another file",
+                   text);
 }
 
 }  // namespace
@@ -67,7 +67,7 @@ StudyFacts study_facts_of(const ResultFile& file) {
   try {
     return study_facts_in(file.study_text(), file.study_runs());
   } catch (const StudyError& error) {
-    throw StudyError(file.path().string() + " (the study in it): " + error.what());
+    throw StudyError("{} (the study in it): {}", file.path(), error.what());
   }
 }
 

@@ -48,9 +48,8 @@ RunMean RunMean::in_units_of(double unit, double offset) const {
   return scaled;
 }
 
-// Hall's transformation, ((1 + g x / 3)^3 - 1) / g + g / (6 n), is flat where 1 + g x / 3 is 0. It
-// ends there, since a sample that far on the side of its short tail says nothing about the long
-// tail.
+// Hall's transformation, (5.1) of STATISTICS, is flat where 1 + g x / 3 is 0. It ends there, since
+// a sample that far on the side of its short tail says nothing about the long tail.
 double RunMean::score(double expected) const {
   const auto n = static_cast<double>(runs_.n);
   const double difference = runs_.mean - expected;

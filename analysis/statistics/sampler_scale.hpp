@@ -11,13 +11,13 @@ namespace montecarta::analysis {
 
 /// Number of independent draws of equal weight that a weighted set of particles is worth.
 struct EffectiveDraws {
-  double of_mean = 0.0;  ///< number for the mean: the effective sample size, 1 / sum w^2
+  double of_mean = 0.0;  ///< number for the mean: column `ess`
   /// Number for the covariance: degrees of freedom + 1 (Satterthwaite 1946).
   double of_variance = 0.0;
 };
 
-/// Effective draws of `particles` with the effective sample size `ess` in [1, particles], if
-/// weights do not depend on positions. The sum of cubed weights is that of log-normal weights
+/// Effective draws of `particles` whose column `ess` is in [1, particles], if weights do
+/// not depend on positions. The sum of cubed weights is that of log-normal weights
 /// (STATISTICS 4). For equal weights both are `particles`.
 EffectiveDraws effective_draws(std::size_t particles, double ess);
 

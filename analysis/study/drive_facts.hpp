@@ -8,7 +8,7 @@
 
 namespace montecarta::analysis {
 
-/// What happened on a recorded drive and changes how its verdicts are to be read, a sentence each:
+/// Sentences on events of a recorded drive that change how its verdicts are to be read:
 /// filters without a landmark, gross outliers, a reference with the headings of the odometry, and
 /// fixes that are left out. Printed before the verdicts. Empty if the truth is known.
 std::vector<std::string> drive_facts(const StudyAnalysis& study);

@@ -3,6 +3,7 @@
 
 #include "analysis/study/prose.hpp"
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "engine/text/number_text.hpp"
 
 #include <cerrno>
@@ -41,19 +42,19 @@ std::size_t Frame::rows() const {
 }
 
 std::string heading(const std::string& name, const std::string& units) {
-  return units == "1" ? name : name + " [" + units + "]";
+  return units == "1" ? name : formatted("{} [{}]", name, units);
 }
 
 namespace {
 
 std::string quoted(const std::string& field) {
   if (field.find_first_of(",\"\n\r") == std::string::npos) return field;
-  return "\"" + replaced(field, "\"", "\"\"") + "\"";
+  return formatted("\"{}\"", replaced(field, "\"", "\"\""));
 }
 
 [[noreturn]] void cannot_write(const std::filesystem::path& path) {
-  throw RunError(path.string() + ": cannot be written (" + std::strerror(errno) +
-                 "): make room, or choose another place");
+  throw RunError("{}: cannot be written ({}): make room, or choose another place", path,
+                 std::strerror(errno));
 }
 
 void write_in_place(const std::filesystem::path& path, const std::string& text) {
@@ -97,9 +98,8 @@ void make_directory(const std::filesystem::path& directory) {
   std::error_code error;
   std::filesystem::create_directories(directory, error);
   if (error || !std::filesystem::is_directory(directory)) {
-    throw RunError(directory.string() + ": cannot be made (" +
-                   (error ? error.message() : "something else has that name") +
-                   "): choose another place");
+    throw RunError("{}: cannot be made ({}): choose another place", directory,
+                   error ? error.message() : "something else has that name");
   }
 }
 
@@ -109,7 +109,7 @@ void write_text(const std::filesystem::path& path, const std::string& text) {
       std::filesystem::exists(target) && !std::filesystem::is_regular_file(target);
   if (is_special) return write_in_place(target, text);
   std::filesystem::path draft = target;
-  draft += "." + std::to_string(::getpid()) + ".new";
+  draft += formatted(".{}.new", ::getpid());
   try {
     write_in_place(draft, text);
     std::filesystem::rename(draft, target);

@@ -2,6 +2,7 @@
 #include "analysis/study/prose.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 
 #include <algorithm>
 
@@ -11,7 +12,7 @@ namespace {
 constexpr std::string_view kProseHeading = "## ";
 
 std::string heading_text(std::string_view name, std::string_view key) {
-  return std::string(name) + ".md, ## " + std::string(key);
+  return formatted("{}.md, ## {}", name, key);
 }
 
 using AllProse = std::map<std::string_view, ProseTexts>;
@@ -39,7 +40,7 @@ std::string filled(const std::string& text, const Values& values, std::vector<in
     const std::string_view name = std::string_view(text).substr(open + 1, close - open - 1);
     std::size_t k = 0;
     while (k < values.size() && values[k].first != name) ++k;
-    expect(k < values.size(), (where + ": no value for " + std::string(name)).c_str());
+    expect(k < values.size(), formatted("{}: no value for {}", where, name).c_str());
     ++uses[k];
     result.append(text, at, open - at).append(values[k].second);
     at = close + 1;
@@ -88,7 +89,7 @@ std::vector<std::string> paragraphs(std::string_view name, std::string_view key,
   std::vector<std::string> all;
   for (const std::string& text : found->second) all.push_back(filled(text, values, uses, where));
   for (std::size_t k = 0; k < values.size(); ++k) {
-    expect(uses[k] > 0, (where + ": {" + std::string(values[k].first) + "} is not used").c_str());
+    expect(uses[k] > 0, formatted("{}: {{{}}} is not used", where, values[k].first).c_str());
   }
   return all;
 }
@@ -111,8 +112,7 @@ std::string_view file_of_prose(std::string_view key) {
   for (const auto& [name, texts] : all_prose()) {
     if (texts.contains(key)) names.push_back(name);
   }
-  expect(names.size() == 1,
-         ("## " + std::string(key) + ": one file is expected to have it").c_str());
+  expect(names.size() == 1, formatted("## {}: one file is expected to have it", key).c_str());
   return names.front();
 }
 

@@ -192,7 +192,7 @@ StoredSums read_stored_sums(const ResultFile& file, const StoredCell& cell,
           all.sums.merge(std::move(group.sums));
         });
   } catch (const StudyError& error) {
-    throw StudyError(file.path().string() + ": cell '" + cell.label + "': " + error.what());
+    throw StudyError("{}: cell '{}': {}", file.path(), cell.label, error.what());
   }
   const std::vector<double> all_seconds = file.cpu_seconds_in_sums(cell);
   std::vector<double> seconds;

@@ -10,6 +10,7 @@
 #include "analysis/study/efficiency.hpp"
 #include "analysis/study/stored_sums.hpp"
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "engine/runs/monte_carlo.hpp"
 #include "engine/text/number_text.hpp"
 
@@ -31,10 +32,10 @@ bool is_work_in_progress(const std::filesystem::path& path) {
 void expect_planned(const ResultFile& file, const StoredCell& cell, std::size_t i) {
   file.expect_whole(cell, i);
   if (study_facts_of(file).stops_early && i >= kFirstRound) return;
-  throw StudyError(file.path().string() + ": cell '" + cell.label + "', run " +
-                   std::to_string(file.runs()[i]) +
-                   ": damaged (marked as not needed, but the study plans no such end there): take "
-                   "a copy that is whole, or run the study again");
+  throw StudyError(
+      "{}: cell '{}', run {}: damaged (marked as not needed, but the study plans no such end "
+      "there): take a copy that is whole, or run the study again",
+      file.path(), cell.label, file.runs()[i]);
 }
 
 /// Counts the interim analyses that were planned and made, by the runs that were made.
@@ -134,11 +135,10 @@ std::vector<CellSums> sums_of_tasks(const ResultFile& file, std::span<CellTask> 
 void expect_usable_sums(const ResultFile& file, double level) {
   if (!file.has_sums()) return;
   if (level != kStoredLevel) {
-    throw StudyError(file.path().string() + ": level " + compact(level) +
-                     " (the file has sums instead of runs, made for the level " +
-                     compact(kStoredLevel) +
-                     "): use that level, or run the study again without "
-                     "sums in record.columns");
+    throw StudyError(
+        "{}: level {} (the file has sums instead of runs, made for the level {}): use that level, "
+        "or run the study again without sums in record.columns",
+        file.path(), compact(level), compact(kStoredLevel));
   }
   if (file.description().sums->first_run > 0) {
     throw StudyError(file.path().string() +
@@ -216,8 +216,8 @@ bool StudyAnalysis::has_failures() const {
 std::string StudyAnalysis::scans_text() const {
   const std::string scans = std::to_string(judged.first + times.size()) + " scans";
   if (judged.first > 0) {
-    return scans + " each, judged from " + exact_text(judged.from) + " s on (" +
-           std::to_string(times.size()) + " scans)";
+    return formatted("{} each, judged from {} s on ({} scans)", scans, exact_text(judged.from),
+                     times.size());
   }
   return own_drives > 0 ? "up to " + scans : scans + " each";
 }

@@ -11,6 +11,7 @@
 #include "analysis/study/registry.hpp"
 #include "analysis/study/score_table.hpp"
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "engine/text/number_text.hpp"
 
 #include <algorithm>
@@ -91,8 +92,8 @@ void adjust(std::vector<CellComparison>& rows) {
 const CellAnalysis& cell_called(const StudyAnalysis& study, const std::string& label) {
   const auto found = std::ranges::find(study.cells, label, &CellAnalysis::label);
   if (found != study.cells.end()) return *found;
-  throw StudyError(label + ": no cell of " + study.file +
-                   " (each is compared with one of its own): choose another");
+  throw StudyError("{}: no cell of {} (each is compared with one of its own): choose another",
+                   label, study.file);
 }
 
 Wins seen_from_the_other(Wins wins) {
@@ -191,8 +192,9 @@ std::string pairs_text(const CellComparison& row) {
 /// A finding in words: "NEES ratio higher (277 times as large)".
 std::string finding_of(const CellComparison& row, double level) {
   const std::string finding = name_in_tables(*row.score) + ' ' + row.verdict(level);
-  return std::isfinite(row.ratio) ? finding + " (" + readable(row.ratio) + " times as large)"
-                                  : finding;
+  return std::isfinite(row.ratio)
+             ? formatted("{} ({} times as large)", finding, readable(row.ratio))
+             : finding;
 }
 
 /// A sentence on one cell, to which all rows belong: "fast against ekf: NEES ratio higher (277
@@ -207,7 +209,7 @@ std::string sentence_of(std::span<const CellComparison> rows, const Comparisons&
   }
   if (!undecided.empty())
     undecided = (decided.empty() ? "undecided: " : "; undecided: ") + undecided;
-  return rows.front().cell + " against " + all.baseline + ": " + decided + undecided + ".";
+  return formatted("{} against {}: {}{}.", rows.front().cell, all.baseline, decided, undecided);
 }
 
 /// Adds, for each cell with failures, a note on how they count.
@@ -363,7 +365,8 @@ std::vector<std::string> comparison_sentences(const Comparisons& comparisons) {
 
 TextTable difference_table(const Comparisons& comparisons) {
   TextTable table{.keys = 2};
-  const std::string heading_of_difference = "difference [" + level_text(comparisons.level) + "]";
+  const std::string heading_of_difference =
+      formatted("difference [{}]", level_text(comparisons.level));
   const bool are_all_paired = std::ranges::none_of(comparisons.rows, [](const auto& row) {
     return row.without + row.baseline_without + row.neither + row.unpaired > 0;
   });

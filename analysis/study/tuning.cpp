@@ -3,6 +3,7 @@
 
 #include "analysis/statistics/spread.hpp"
 #include "analysis/study/prose.hpp"
+#include "engine/formatted.hpp"
 #include "engine/text/number_text.hpp"
 
 #include <algorithm>
@@ -19,28 +20,29 @@ constexpr double kWideInterval = 2.0;
 constexpr double kHighestDrawn = 10.0;
 
 std::string factor_range_text(const Interval& interval) {
-  return readable(interval.lower, kFactorDigits) + " to " + readable(interval.upper, kFactorDigits);
+  return formatted("{} to {}", readable(interval.lower, kFactorDigits),
+                   readable(interval.upper, kFactorDigits));
 }
 
 /// "2.01 times the noise of its motion (95 %: 1.97 to 2.05)".
 std::string factor_words(const TunedFactor& factor, const std::string& noise,
                          const std::string& level) {
-  return readable(factor.value, kFactorDigits) + " times the noise of its " + noise + " (" + level +
-         factor_range_text(factor.interval) + ")";
+  return formatted("{} times the noise of its {} ({}{})", readable(factor.value, kFactorDigits),
+                   noise, level, factor_range_text(factor.interval));
 }
 
 std::string factors_in_words(const TunedNoise& noise) {
   if (!noise.sensor.is_free()) return factor_words(noise.motion, "motion", "95 %: ");
   if (!noise.motion.is_free()) return factor_words(noise.sensor, "sensor", "95 %: ");
-  return factor_words(noise.motion, "motion", "95 %: ") + " and " +
-         factor_words(noise.sensor, "sensor", "");
+  return formatted("{} and {}", factor_words(noise.motion, "motion", "95 %: "),
+                   factor_words(noise.sensor, "sensor", ""));
 }
 
 std::string tuned_text(const TunedFactor& factor) {
   if (!factor.is_free()) return "-";
-  return readable(factor.value, kFactorDigits) + " [" +
-         readable(factor.interval.lower, kFactorDigits) + ", " +
-         readable(factor.interval.upper, kFactorDigits) + "]";
+  return formatted("{} [{}, {}]", readable(factor.value, kFactorDigits),
+                   readable(factor.interval.lower, kFactorDigits),
+                   readable(factor.interval.upper, kFactorDigits));
 }
 
 void add_tuned_row(const std::string& name, const std::optional<TunedNoise>& noise,
@@ -52,7 +54,8 @@ void add_tuned_row(const std::string& name, const std::optional<TunedNoise>& noi
 
 /// "+4.1 %" of a logarithm.
 std::string change_text(double logarithm) {
-  return (logarithm < 0.0 ? "" : "+") + readable(100.0 * std::expm1(logarithm), 2) + " %";
+  return formatted("{}{} %", logarithm < 0.0 ? "" : "+",
+                   readable(100.0 * std::expm1(logarithm), 2));
 }
 
 /// The noises on whose factors something holds: "motion", "motion and sensor"; empty if on none.
@@ -89,9 +92,9 @@ bool depend_on_interval(const std::vector<TunedByInterval>& all) {
 std::string gain_note(const TuningResult& result, const TuningConfirmation& confirmation) {
   const std::string runs = std::to_string(confirmation.runs);
   const std::string where =
-      result.has_truth ? runs + " fresh runs (seed " + std::to_string(confirmation.seed) + ")"
+      result.has_truth         ? formatted("{} fresh runs (seed {})", runs, confirmation.seed)
       : confirmation.runs == 1 ? "the second half of the drive"
-                               : "the second halves of " + runs + " drives";
+                               : formatted("the second halves of {} drives", runs);
   return prose("tuning", "gain",
                {{"where", where},
                 {"gain", with_interval(confirmation.gain.mean, confirmation.gain.interval)}});
@@ -121,18 +124,21 @@ double NoiseGrid::least() const {
 }
 
 std::string tuning_sentence(const TuningResult& result, const TuningConfirmation& confirmation) {
-  const std::string found = result.cell + " should assume " + factors_in_words(result.noise) + ".";
+  const std::string found =
+      formatted("{} should assume {}.", result.cell, factors_in_words(result.noise));
   if (!result.has_truth)
-    return found + " " + prose("tuning", "innovations", {{"verdict", confirmation.verdict}});
+    return formatted("{} {}", found,
+                     prose("tuning", "innovations", {{"verdict", confirmation.verdict}}));
   const bool is_open =
       confirmation.answer == Answer::undecided || confirmation.answer == Answer::untested;
   const char* const key = confirmation.answer == Answer::consistent ? "consistent"
                           : is_open                                 ? "undecided"
                           : confirmation.is_slight                  ? "slight"
                                                                     : "not consistent";
-  return found + " " +
-         prose("tuning", key,
-               {{"runs", std::to_string(confirmation.runs)}, {"verdict", confirmation.verdict}});
+  return formatted(
+      "{} {}", found,
+      prose("tuning", key,
+            {{"runs", std::to_string(confirmation.runs)}, {"verdict", confirmation.verdict}}));
 }
 
 std::vector<std::string> tuning_notes(const TuningResult& result,

@@ -61,7 +61,7 @@ double mean_not_shown(double margin, double n, double level) {
 
 void require_number(bool is_good, const char* name, double value, const char* advice) {
   if (is_good) return;
-  throw StudyError(std::string(name) + " = " + std::to_string(value) + " " + advice);
+  throw StudyError("{} = {} {}", name, std::to_string(value), advice);
 }
 
 void require_ratio(double ratio) {
@@ -85,8 +85,8 @@ void require_margin(double within) {
 
 NeesPlan::NeesPlan(const NeesTest& test) : test_(test) {
   if (test.scans == 0 || test.scans > kMostPlannedScans) {
-    throw StudyError("scans = " + std::to_string(test.scans) +
-                     " (a run has 1 to 100000 independent scans): give what a run has");
+    throw StudyError("scans = {} (a run has 1 to 100000 independent scans): give what a run has",
+                     test.scans);
   }
   nees_bounds(1, test.dimension, test.level);  // throws if dimension or level is wrong
 }
@@ -132,8 +132,8 @@ std::uint64_t NeesPlan::fewest(const std::function<bool(std::uint64_t)>& is_enou
   std::uint64_t enough = 3;  // fewer runs reject nothing
   while (!is_enough(enough)) {
     if (enough >= kMostPlannedRuns) {
-      throw StudyError("more than " + std::to_string(kMostPlannedRuns) +
-                       " runs would be needed: take a ratio farther from 1");
+      throw StudyError("more than {} runs would be needed: take a ratio farther from 1",
+                       kMostPlannedRuns);
     }
     enough *= 2;
   }

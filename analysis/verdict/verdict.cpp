@@ -345,9 +345,9 @@ void refuse_by_bets(Side side, Verdict& verdict) {
 
 GateAnswer gate(const Verdict& verdict, const Allowance& allowed) {
   if (verdict.beside.repeated_runs > 0) {
-    throw StudyError("the errors of run " + std::to_string(verdict.beside.first_repeat.first) +
-                     " are those of run " + std::to_string(verdict.beside.first_repeat.second) +
-                     " (runs must be independent): give each run once");
+    throw StudyError(
+        "the errors of run {} are those of run {} (runs must be independent): give each run once",
+        verdict.beside.first_repeat.first, verdict.beside.first_repeat.second);
   }
   if (verdict.failed > allowed.failed || verdict.unusable > allowed.unusable) {
     return GateAnswer::inconsistent;

@@ -176,7 +176,8 @@ struct Verdict {
   bool is_slight() const;
   /// The tests of a family; nullptr if it does not apply.
   const FamilyTest* find(Family family) const;
-  /// Interval of the ratio of all squared errors to the expected ones; NaN if there is none.
+  /// Interval of the NEES ratio, by the test that SummedError::size_test() made of Family::size;
+  /// NaN if there is none.
   Interval ratio() const;
   double ratio_estimate() const;
 };

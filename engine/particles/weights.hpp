@@ -75,7 +75,7 @@ class Weights {
     return log_sum;
   }
 
-  /// Effective number of particles, 1 / sum of squares (Kong, Liu and Wong 1994).
+  /// Effective sample size, (18.1) of EQUATIONS.
   double effective() const { return effective_; }
 
  private:

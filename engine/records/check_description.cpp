@@ -2,6 +2,7 @@
 #include "engine/records/check_description.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "engine/records/run_record.hpp"
 #include "engine/text/visible_text.hpp"
 
@@ -37,7 +38,7 @@ using Check = std::function<void(bool, const std::string&)>;
 /// Checks the texts that are shown within one line of a table, a figure or a comment.
 void check_texts(const ResultDescription& d, const Check& check) {
   const auto require_line = [&](const std::string& text) {
-    check(visible(text, "\t") == text, "a control character in '" + visible(text) + "'");
+    check(visible(text, "\t") == text, formatted("a control character in '{}'", visible(text)));
   };
   require_line(d.study_name);
   require_line(d.title);
@@ -91,13 +92,13 @@ void check_references(const std::vector<ReferencePath>& references, const Check&
   for (const ReferencePath& path : references) {
     check(path.position.size() == path.time.size() &&
               (path.heading.empty() || path.heading.size() == path.time.size()),
-          "reference " + path.name + " has other fixes than times");
+          formatted("reference {} has other fixes than times", path.name));
     check(are_finite(path.time) && are_finite(path.position),
-          "a fix of reference " + path.name + " is no place");
+          formatted("a fix of reference {} is no place", path.name));
     const auto is_finite = [](const Eigen::Matrix3d& covariance) { return covariance.allFinite(); };
     check((path.covariance.empty() || path.covariance.size() == path.time.size()) &&
               std::ranges::all_of(path.covariance, is_finite),
-          "reference " + path.name + " has no covariance for each of its fixes");
+          formatted("reference {} has no covariance for each of its fixes", path.name));
   }
 }
 
@@ -173,25 +174,25 @@ void check_columns(const StoredCell& cell, const Check& check) {
   for (const Column& column : cell.columns) {
     const auto known = std::ranges::find(column_table(), column.name, &ColumnKind::name);
     check(known == column_table().end() || known->axes == column.axes,
-          "cells/" + cell.label + "/" + column.name + " has other axes than it should");
+          formatted("cells/{}/{} has other axes than it should", cell.label, column.name));
   }
   for (const std::span<const Column> columns : {cell.usual(), cell.full()}) {
     for (const auto& together : kTogether) {
       const auto there = std::ranges::count_if(
           together, [&](std::string_view name) { return has(columns, name); });
       check(there == 0 || there == std::ssize(together),
-            "cells/" + cell.label + " has only a part of " + std::string(together.front()) +
-                " and what belongs to it");
+            formatted("cells/{} has only a part of {} and what belongs to it", cell.label,
+                      together.front()));
     }
     check(has(columns, "pose_covariance") || cell.has("error") ||
               !has(columns, "pose_covariance_mixture"),
-          "cells/" + cell.label + " has pose_covariance_mixture and no pose_covariance");
+          formatted("cells/{} has pose_covariance_mixture and no pose_covariance", cell.label));
   }
   const std::pair<std::string, std::string> alone = {"state", "innovations"};
   const bool has_innovations_alone =
       cell.has("nis") && std::ranges::find(cell.settings, alone) != cell.settings.end();
   check(cell.has("pose_mean") || cell.has("error") || has_innovations_alone,
-        "cells/" + cell.label + " has no pose_mean");
+        formatted("cells/{} has no pose_mean", cell.label));
   check(cell.label.size() <= kLongestLabel, "the label of a cell is too long");
 }
 
@@ -214,9 +215,8 @@ void check_lengths(const ResultDescription& d, const StoredCell& cell, const Che
       const Axis axis = row_axis(column.axes[a]);
       const auto known =
           length_of(axis, lengths).value_or(own.try_emplace(axis, column.shape[a]).first->second);
-      check(column.shape[a] == known, "cells/" + cell.label + "/" + column.name +
-                                          " is not as long as its axis " +
-                                          std::string(name_of(axis)));
+      check(column.shape[a] == known, formatted("cells/{}/{} is not as long as its axis {}",
+                                                cell.label, column.name, name_of(axis)));
     }
   }
 }
@@ -226,8 +226,8 @@ void check_lengths(const ResultDescription& d, const StoredCell& cell, const Che
 void check_description(const ResultDescription& description, const std::filesystem::path& path) {
   const Check check = [&](bool condition, const std::string& damage) {
     if (condition) return;
-    throw StudyError(path.string() + ": damaged (" + damage +
-                     "): take a copy that is whole, or run the study again");
+    throw StudyError("{}: damaged ({}): take a copy that is whole, or run the study again", path,
+                     damage);
   };
   check_texts(description, check);
   check_runs(description, check);

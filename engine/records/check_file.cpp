@@ -2,6 +2,7 @@
 #include "engine/records/check_file.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "engine/records/fingerprint.hpp"
 #include "engine/records/forked_reader.hpp"
 #include "engine/records/h5.hpp"
@@ -60,9 +61,9 @@ class RunCheck {
       : file_(file), d_(description), path_(path), has_record_(description.runs.size()) {}
 
   void check_cell(const StoredCell& cell) {
-    const std::string group = "cells/" + cell.label + "/";
+    const std::string group = formatted("cells/{}/", cell.label);
     const auto status = per_run<RunStatus>(file_, group + "status", Element::u8, d_.runs.size());
-    require_known(status, path_.string() + ": cell '" + cell.label + "'");
+    require_known(status, formatted("{}: cell '{}'", path_, cell.label));
     std::vector<Rows> usual = columns(cell, 0, cell.usual_columns);
     usual.push_back(open_rows(file_, group + "status", Element::u8, 1));
     usual.push_back(open_rows(file_, group + "failure_step", Element::u32, sizeof(std::uint32_t)));
@@ -74,8 +75,8 @@ class RunCheck {
     if (cell.full().empty()) return;
     const std::vector<RunStatus> full(
         status.begin(), status.begin() + static_cast<std::ptrdiff_t>(d_.full_runs_here()));
-    compare(group + format::kFull + "/", columns(cell, cell.usual_columns, cell.columns.size()),
-            full);
+    compare(formatted("{}{}/", group, format::kFull),
+            columns(cell, cell.usual_columns, cell.columns.size()), full);
   }
 
   /// The true paths of the runs that any cell has.
@@ -116,10 +117,10 @@ class RunCheck {
   }
 
   [[noreturn]] void refuse(const std::string& group, std::size_t i) const {
-    throw StudyError(path_.string() + ": changed by another program (in '/" + group + "' run " +
-                     std::to_string(d_.runs[i]) +
-                     " does not fit its fingerprint): take the file as montecarta wrote it, or run "
-                     "the study again");
+    throw StudyError(
+        "{}: changed by another program (in '/{}' run {} does not fit its fingerprint): take the "
+        "file as montecarta wrote it, or run the study again",
+        path_, group, d_.runs[i]);
   }
 
   const h5::Handle& file_;

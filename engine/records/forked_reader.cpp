@@ -121,8 +121,9 @@ ForkedReader::ForkedReader(std::filesystem::path path, const Answer& answer)
   if (copy_ > 0) return;
   const std::string reason = std::strerror(errno);
   if (line_ >= 0) ::close(line_);
-  throw RunError(path_.string() + ": no process to read it (" + reason +
-                 "): allow more processes (ulimit -u) and open files (ulimit -n)");
+  throw RunError(
+      "{}: no process to read it ({}): allow more processes (ulimit -u) and open files (ulimit -n)",
+      path_, reason);
 }
 
 ForkedReader::~ForkedReader() {

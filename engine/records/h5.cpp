@@ -2,6 +2,7 @@
 #include "engine/records/h5.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 
 #include <hdf5.h>
 #include <hdf5_hl.h>
@@ -67,9 +68,10 @@ std::int64_t check(std::int64_t status, const char* what, const Handle& object,
   if (status >= 0) return status;
   const std::string own = name_by(H5Iget_name, object.id());
   const std::string within = (own == "/" ? "" : own) + (name.empty() ? "" : "/" + name);
-  const std::string said =
-      name_by(H5Fget_name, object.id()) + ": cannot " + what + " '" + within +
-      "' (the file is damaged, not of montecarta, or the disk failed): check it with 'h5ls -r'";
+  const std::string said = formatted(
+      "{}: cannot {} '{}' (the file is damaged, not of montecarta, or the disk failed): check it "
+      "with 'h5ls -r'",
+      name_by(H5Fget_name, object.id()), what, within);
   if (is_only_read(object)) throw StudyError(said);
   throw RunError(said);
 }
@@ -162,7 +164,7 @@ std::string library_version() {
   unsigned minor = 0;
   unsigned release = 0;
   H5get_libversion(&major, &minor, &release);
-  return std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(release);
+  return formatted("{}.{}.{}", major, minor, release);
 }
 
 Handle create_file(const std::filesystem::path& path) {
@@ -386,9 +388,7 @@ std::string stored_bytes_of(const Handle& attribute, const Handle& type, std::si
 
 std::string attributes_text(const Handle& object) {
   std::string all;
-  const auto add = [&](const std::string& part) {
-    all += std::to_string(part.size()) + ":" + part;
-  };
+  const auto add = [&](const std::string& part) { all += formatted("{}:{}", part.size(), part); };
   for (const std::string& name : attribute_names(object)) {
     const Handle attribute = open_attribute(object, name);
     const Handle type(H5Aget_type(attribute.id()));
@@ -398,7 +398,7 @@ std::string attributes_text(const Handle& object) {
     const auto count = static_cast<std::size_t>(
         check(H5Sget_simple_extent_npoints(space.id()), "read attribute", object, name));
     add(name);
-    add(std::to_string(kind) + " " + std::to_string(count));
+    add(formatted("{} {}", kind, count));
     if (kind != H5T_STRING) add(stored_bytes_of(attribute, type, count));
     if (kind == H5T_STRING) {
       for (const std::string& value : find_texts(object, name)) add(value);

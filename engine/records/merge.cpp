@@ -2,6 +2,7 @@
 #include "engine/records/merge.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "engine/records/check_file.hpp"
 #include "engine/records/open_result.hpp"
 #include "engine/records/sum_groups.hpp"
@@ -45,7 +46,7 @@ std::vector<std::string> ranges(const std::vector<std::uint64_t>& runs) {
   std::vector<std::string> found;
   for (std::size_t begin = 0, end = 0; begin < runs.size(); begin = end) {
     while (end < runs.size() && runs[end] == runs[begin] + (end - begin)) ++end;
-    found.push_back(std::to_string(runs[begin]) + ":" + std::to_string(runs[end - 1] + 1));
+    found.push_back(formatted("{}:{}", runs[begin], runs[end - 1] + 1));
   }
   return found;
 }

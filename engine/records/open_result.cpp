@@ -2,6 +2,7 @@
 #include "engine/records/open_result.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "engine/records/check_file.hpp"
 #include "engine/records/fingerprint.hpp"
 #include "engine/records/result_format.hpp"
@@ -36,9 +37,10 @@ void expect_room(const fs::path& path, double bytes) {
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
   const fs::space_info space = fs::space(folder, ignored);
   if (ignored || bytes <= static_cast<double>(space.available)) return;
-  throw RunError(path.string() + ": " + bytes_text(bytes) + " are needed, " +
-                 bytes_text(static_cast<double>(space.available)) +
-                 " are free: free space, choose another disk, or store fewer runs or columns");
+  throw RunError(
+      "{}: {} are needed, {} are free: free space, choose another disk, or store fewer runs or "
+      "columns",
+      path, bytes_text(bytes), bytes_text(static_cast<double>(space.available)));
 }
 
 /// Lays out an empty result at the temporary name `path` and returns it locked. `fill` writes the
@@ -116,21 +118,21 @@ ResultDescription read_description_of(const fs::path& path) {
   try {
     return read_description(path);
   } catch (const std::runtime_error& error) {
-    throw StudyError(path.string() + ": cannot be resumed (" + error.what() +
-                     "): start afresh with --force");
+    throw StudyError("{}: cannot be resumed ({}): start afresh with --force", path, error.what());
   }
 }
 
 std::string range(const ResultDescription& result) {
-  return std::to_string(result.runs.front()) + ":" + std::to_string(result.runs.back() + 1);
+  return formatted("{}:{}", result.runs.front(), result.runs.back() + 1);
 }
 
 void require_same(const fs::path& path, const ResultDescription& planned,
                   const ResultDescription& stored) {
   if (const auto different = difference(planned, stored, path)) throw StudyError(*different);
   if (stored.runs == planned.runs) return;
-  throw StudyError(path.string() + ": holds runs " + range(stored) + " (asked for: " +
-                   range(planned) + "): give the same --runs or --shard as at the start");
+  throw StudyError(
+      "{}: holds runs {} (asked for: {}): give the same --runs or --shard as at the start", path,
+      range(stored), range(planned));
 }
 
 /// Says in the provenance of unfinished work that its first runs are those of the result that it
@@ -167,9 +169,10 @@ void require_replaceable(const fs::path& path, const ResultDescription& planned,
                          const ResultDescription& begun, OlderResult older) {
   if (!is_there(path) || begun_with_force(begun) || holds_the_same(path, planned)) return;
   if (is_extension(begun) && older == OlderResult::has_first_runs) return;
-  throw StudyError(path.string() + ": exists and is not the result that " + part_of(path).string() +
-                   " becomes (finishing would replace it): move it away, then continue with "
-                   "--resume, or start afresh with --force");
+  throw StudyError(
+      "{}: exists and is not the result that {} becomes (finishing would replace it): move it "
+      "away, then continue with --resume, or start afresh with --force",
+      path, part_of(path));
 }
 
 void forget(OpenResult& result, std::size_t cell, std::size_t run_index) {
@@ -201,7 +204,7 @@ std::string differences(const TextPairs& begun, const TextPairs& now) {
   std::string line;
   for (const auto& pair : now) {
     if (std::ranges::find(begun, pair) == begun.end())
-      line += pair.first + "=" + pair.second + "; ";
+      line += formatted("{}={}; ", pair.first, pair.second);
   }
   return line.empty() ? "resumed" : line.substr(0, line.size() - 2);
 }
@@ -240,9 +243,10 @@ void require_finished(const OpenResult& result) {
   }
   if (missing == 0) return;
   const fs::path& path = result.file.path();
-  throw StudyError(path.string() + ": " + std::to_string(missing) + " of " + std::to_string(all) +
-                   " runs are missing (unfinished work under a final name): rename it to " +
-                   part_of(path).string() + ", then continue with --resume");
+  throw StudyError(
+      "{}: {} of {} runs are missing (unfinished work under a final name): rename it to {}, then "
+      "continue with --resume",
+      path, missing, all, part_of(path));
 }
 
 /// Opens a result under its final name. Throws StudyError if runs are missing.
@@ -298,7 +302,7 @@ std::size_t copy_complete_runs(const PosixFile& from, const ResultSlabs& slabs, 
 /// The description of a study if it had as many runs as `stored`.
 ResultDescription with_runs_of(const ResultDescription& stored, ResultDescription planned) {
   const std::string begin = "\nruns = ", runs = std::to_string(planned.study_runs);
-  const std::size_t line = planned.study_text.find(begin + runs + "\n");
+  const std::size_t line = planned.study_text.find(formatted("{}{}\n", begin, runs));
   if (line != std::string::npos) {
     planned.study_text.replace(line + begin.size(), runs.size(), std::to_string(stored.study_runs));
   }
@@ -324,11 +328,11 @@ std::optional<ResultDescription> first_runs_at(const fs::path& path, const Study
       std::ranges::equal(stored->runs, std::span(planned.runs).first(stored->runs.size()));
   if (!is_shorter || difference(with_runs_of(*stored, planned), *stored, path)) return std::nullopt;
   if (!plan.is_enough && stored->drives.empty() && !stored->sums) return stored;
-  throw StudyError(path.string() + ": has " + std::to_string(stored->study_runs) +
-                   " runs, to which none can be added (" +
-                   (plan.is_enough ? "study.until chose among all of them"
-                                   : "it holds sums, or a drive for each run") +
-                   "): run the longer study into another file");
+  throw StudyError(
+      "{}: has {} runs, to which none can be added ({}): run the longer study into another file",
+      path, stored->study_runs,
+      plan.is_enough ? "study.until chose among all of them"
+                     : "it holds sums, or a drive for each run");
 }
 
 /// Copies the runs of a finished result to the work that has more.
@@ -336,7 +340,7 @@ void take_over(const fs::path& path, const ResultDescription& stored, OpenResult
   const PosixFile from(path, PosixFile::Mode::read);
   const ResultSlabs slabs = find_slabs(path, stored);
   const std::size_t copied = copy_complete_runs(from, slabs, stored.runs.size(), to);
-  to.notes.push_back(std::to_string(copied) + " runs were taken over from " + path.string());
+  to.notes.push_back(formatted("{} runs were taken over from {}", copied, path));
 }
 
 /// Begins the work on a result with more runs than the one at `path`, which stays until then.
@@ -370,13 +374,13 @@ OpenResult resume_result(const fs::path& path, const StudyPlan& plan, const Text
 std::string name_of_process() {
   std::array<char, 65> host{};
   ::gethostname(host.data(), host.size() - 1);
-  return std::string(host.data()) + "." + std::to_string(::getpid());
+  return formatted("{}.{}", host.data(), ::getpid());
 }
 
 fs::path name_of_attempt(const fs::path& path) {
   const auto now = std::chrono::system_clock::now().time_since_epoch().count();
   fs::path name = part_of(path);
-  return name += "." + name_of_process() + "." + std::to_string(now);
+  return name += formatted(".{}.{}", name_of_process(), now);
 }
 
 namespace {
@@ -434,10 +438,9 @@ void copy_complete_runs(const fs::path& other, const ResultDescription& planned,
     const PosixFile from(other, PosixFile::Mode::read);
     const std::size_t copied =
         copy_complete_runs(from, find_slabs(other, *stored), stored->runs.size(), to);
-    if (copied > 0)
-      to.notes.push_back(std::to_string(copied) + " runs were taken over from " + name);
+    if (copied > 0) to.notes.push_back(formatted("{} runs were taken over from {}", copied, name));
   } catch (const std::runtime_error& error) {
-    to.notes.push_back("the rest of " + name + " is computed again: " + error.what());
+    to.notes.push_back(formatted("the rest of {} is computed again: {}", name, error.what()));
   }
 }
 

@@ -2,6 +2,7 @@
 #include "engine/records/posix_file.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 
 #include <algorithm>
 #include <array>
@@ -18,14 +19,14 @@
 namespace montecarta::engine {
 namespace {
 
-std::string reason(int error) { return " (" + std::string(std::strerror(error)) + ")"; }
+std::string reason(int error) { return formatted(" ({})", std::strerror(error)); }
 
 [[noreturn]] void fail_to_open(const std::filesystem::path& path, int error) {
   std::string remedy = "choose another path";
   if (error == ENOENT) remedy = "make the folder first, or check the spelling";
   if (error == EACCES || error == EPERM || error == EROFS)
     remedy = "choose a path where you may write, or change the permissions";
-  throw StudyError(path.string() + ": cannot open it" + reason(error) + ": " + remedy);
+  throw StudyError("{}: cannot open it{}: {}", path, reason(error), remedy);
 }
 
 std::string remedy(int error) {
@@ -35,12 +36,13 @@ std::string remedy(int error) {
 }
 
 [[noreturn]] void fail_to_write(const std::filesystem::path& path, int error) {
-  throw RunError(path.string() + ": cannot write" + reason(error) + ": " + remedy(error) +
-                 ", then continue with --resume; the runs stored so far are safe");
+  throw RunError(
+      "{}: cannot write{}: {}, then continue with --resume; the runs stored so far are safe", path,
+      reason(error), remedy(error));
 }
 
 [[noreturn]] void fail_to_read(const std::filesystem::path& path, const std::string& why) {
-  throw RunError(path.string() + ": cannot read" + why + ": check the disk, or make the file anew");
+  throw RunError("{}: cannot read{}: check the disk, or make the file anew", path, why);
 }
 
 off_t signed_offset(std::uint64_t offset) { return static_cast<off_t>(offset); }
@@ -156,8 +158,8 @@ void PosixFile::reserve() const {
     error = ::fallocate(descriptor_, 0, 0, signed_offset(bytes)) == 0 ? 0 : errno;
   } while (error == EINTR);
   if (error != ENOSPC && error != EDQUOT && error != EFBIG) return;
-  throw RunError(path_.string() + ": cannot reserve " + std::to_string(bytes) + " bytes" +
-                 reason(error) + ": " + remedy(error) + ", or store fewer runs or columns");
+  throw RunError("{}: cannot reserve {} bytes{}: {}, or store fewer runs or columns", path_, bytes,
+                 reason(error), remedy(error));
 }
 
 void PosixFile::sync() const {
@@ -195,9 +197,9 @@ void PosixFile::rename(const std::filesystem::path& name, Existing existing) {
   if (existing == Existing::refuse) {
     status = ::renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, name.c_str(), RENAME_NOREPLACE);
     if (status != 0 && errno == EEXIST)
-      throw StudyError(name.string() +
-                       ": exists (made meanwhile by someone else): the result stays in " +
-                       path_.string() + "; move one of them");
+      throw StudyError(
+          "{}: exists (made meanwhile by someone else): the result stays in {}; move one of them",
+          name, path_);
   }
   if (status != 0) status = ::rename(path_.c_str(), name.c_str());
   if (status != 0) fail_to_write(name, errno);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/records/provenance.hpp"
 
+#include "engine/formatted.hpp"
 #include "engine/records/h5.hpp"
 
 #include "git_hash.hpp"
@@ -74,7 +75,7 @@ TextPairs collect_provenance() {
       {"hdf5", h5::library_version()},
       {"date", date()},
       {"host", known ? system.nodename : "unknown"},
-      {"system", known ? std::string(system.sysname) + " " + system.release : "unknown"},
+      {"system", known ? formatted("{} {}", system.sysname, system.release) : "unknown"},
       {"cpu", cpu()},
   };
 }

@@ -94,15 +94,15 @@ std::optional<SummedRuns> read_summed_runs(const h5::Handle& file,
 std::uint64_t minor_version_of(const h5::Handle& file, const std::filesystem::path& path) {
   if (h5::find_text(file, "filetype") != std::string(format::kFiletype)) {
     throw StudyError(
-        path.string() + ": not a montecarta result (its attribute 'filetype' is not '" +
-        std::string(format::kFiletype) + "'): give a file that 'montecarta run' wrote");
+        "{}: not a montecarta result (its attribute 'filetype' is not '{}'): give a file that "
+        "'montecarta run' wrote",
+        path, format::kFiletype);
   }
   const auto version = h5::numbers(file, "format_version");
   if (version.size() != 2 || version[0] != format::kMajor) {
-    throw StudyError(path.string() + ": format version " +
-                     (version.empty() ? "?" : std::to_string(version[0])) +
-                     " (this program reads version " + std::to_string(format::kMajor) +
-                     "): use the montecarta that wrote it");
+    throw StudyError(
+        "{}: format version {} (this program reads version {}): use the montecarta that wrote it",
+        path, version.empty() ? "?" : std::to_string(version[0]), format::kMajor);
   }
   return version[1];
 }

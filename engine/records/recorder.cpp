@@ -135,10 +135,9 @@ void Recorder::record_report(const ScanReport& report, std::size_t scan) {
   }
   if (report.own.size() != layout_->own_columns().size())
     throw StudyError(
-        "the filter reports " + std::to_string(report.own.size()) +
-        " values of its own (it declares " + std::to_string(layout_->own_columns().size()) +
-        "): set ScanReport::own at every update, to the columns that FilterKind::reports "
-        "and restrict_reports leave");
+        "the filter reports {} values of its own (it declares {}): set ScanReport::own at every "
+        "update, to the columns that FilterKind::reports and restrict_reports leave",
+        report.own.size(), layout_->own_columns().size());
   for (const Own& own : own_) own.column[scan] = report.own[own.index];
 }
 

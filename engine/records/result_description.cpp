@@ -2,6 +2,7 @@
 #include "engine/records/result_description.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "engine/records/fingerprint.hpp"
 #include "engine/records/result_format.hpp"
 #include "engine/records/run_record.hpp"
@@ -18,9 +19,10 @@ constexpr std::uint64_t kMostRuns = 10'000'000;
 
 void number_runs(const StudyPlan& plan, ResultDescription& result) {
   if (plan.runs_here() > kMostRuns) {
-    throw StudyError(plan.name + ": " + std::to_string(plan.runs_here()) +
-                     " runs (one file holds at most " + std::to_string(kMostRuns) +
-                     "): lower study.runs, or split the study with --shard I/N");
+    throw StudyError(
+        "{}: {} runs (one file holds at most {}): lower study.runs, or split the study with "
+        "--shard I/N",
+        plan.name, plan.runs_here(), kMostRuns);
   }
   result.runs.resize(plan.runs_here());
   std::iota(result.runs.begin(), result.runs.end(), plan.first_run);
@@ -62,8 +64,8 @@ const Column* StoredCell::find(std::string_view column) const {
 }
 
 std::string StoredCell::dataset_of(std::size_t c) const {
-  return "cells/" + label + "/" + (c < usual_columns ? "" : std::string(format::kFull) + "/") +
-         columns[c].name;
+  return formatted("cells/{}/{}{}", label,
+                   c < usual_columns ? "" : std::string(format::kFull) + "/", columns[c].name);
 }
 
 std::size_t ResultDescription::full_runs_here() const {
@@ -159,18 +161,18 @@ std::optional<std::string> difference(const ResultDescription& a, const ResultDe
   if (a.study_sha256 != b.study_sha256 &&
       without_runs(a.study_text) == without_runs(b.study_text)) {
     const std::string most = std::to_string(std::max(a.study_runs, b.study_runs));
-    return path.string() + ": belongs to a study of another number of runs (" +
-           std::to_string(b.study_runs) + ", not " + std::to_string(a.study_runs) +
-           "): compute the parts of one study, all with --set study.runs=" + most +
-           " and each with its --runs FIRST:LAST, or add runs to the result of fewer by "
-           "'montecarta run STUDY -o RESULT --set study.runs=" +
-           most + " --resume'";
+    return formatted(
+        "{}: belongs to a study of another number of runs ({}, not {}): compute the parts of one "
+        "study, all with --set study.runs={} and each with its --runs FIRST:LAST, or add runs to "
+        "the result of fewer by 'montecarta run STUDY -o RESULT --set study.runs={} --resume'",
+        path, b.study_runs, a.study_runs, most, most);
   }
   if (a.study_sha256 != b.study_sha256) {
-    return path.string() + ": belongs to another study ('" + b.study_name + "', SHA-256 " +
-           b.study_sha256.substr(0, 12) + ", not '" + a.study_name + "', " +
-           a.study_sha256.substr(0, 12) +
-           "): give the files of one study, made with the same --set";
+    return formatted(
+        "{}: belongs to another study ('{}', SHA-256 {}, not '{}', {}): give the files of one "
+        "study, made with the same --set",
+        path, b.study_name, b.study_sha256.substr(0, 12), a.study_name,
+        a.study_sha256.substr(0, 12));
   }
   if (std::ranges::equal(a.cells, b.cells, same_columns) && a.full_runs == b.full_runs &&
       a.times == b.times && a.scan_steps == b.scan_steps && a.joint_scans == b.joint_scans)
@@ -185,8 +187,9 @@ std::vector<std::string> build_differences(const TextPairs& a, const TextPairs& 
   for (const char* name : {"version", "git", "compiler", "flags", "libm"}) {
     const std::optional<std::string> in_a = fact(a, name), in_b = fact(b, name);
     if (!in_a || !in_b || *in_a == *in_b) continue;
-    found.push_back("two builds worked on this study (" + std::string(name) + ": " + *in_a +
-                    " and " + *in_b + "): the last digits of their runs may differ");
+    found.push_back(formatted(
+        "two builds worked on this study ({}: {} and {}): the last digits of their runs may differ",
+        name, *in_a, *in_b));
   }
   return found;
 }

@@ -2,6 +2,7 @@
 #include "engine/records/result_file.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "engine/records/check_file.hpp"
 #include "engine/records/read_description.hpp"
 #include "engine/records/result_format.hpp"
@@ -17,11 +18,13 @@ namespace {
 
 const std::filesystem::path& existing(const std::filesystem::path& path) {
   if (is_there(path)) return path;
-  throw StudyError(path.string() + ": no such file" +
-                   (is_there(part_of(path))
-                        ? " (the work is unfinished): read " + part_of(path).string() +
-                              ", or finish it with 'montecarta run --resume'"
-                        : ": check the spelling"));
+  throw StudyError(
+      "{}: no such file{}", path,
+      is_there(part_of(path))
+          ? formatted(
+                " (the work is unfinished): read {}, or finish it with 'montecarta run --resume'",
+                part_of(path))
+          : ": check the spelling");
 }
 
 std::mutex reading_by_hdf5;  // the library may be built for one thread
@@ -80,8 +83,8 @@ std::vector<T> ResultFile::per_run(const std::string& dataset, Element element) 
 }
 
 std::vector<RunStatus> ResultFile::status(const StoredCell& cell) const {
-  auto statuses = per_run<RunStatus>("cells/" + cell.label + "/status", Element::u8);
-  require_known(statuses, path().string() + ": cell '" + cell.label + "'");
+  auto statuses = per_run<RunStatus>(formatted("cells/{}/status", cell.label), Element::u8);
+  require_known(statuses, formatted("{}: cell '{}'", path(), cell.label));
   return statuses;
 }
 
@@ -94,13 +97,14 @@ void ResultFile::expect_whole(const StoredCell& cell, std::size_t i) const {
     return;
   }
   throw StudyError(
-      path().string() + ": cell '" + cell.label + "', run " + std::to_string(runs()[i]) +
-      ": damaged (its bytes do not fit its fingerprint): take a copy that is whole, or "
-      "run the study again");
+      "{}: cell '{}', run {}: damaged (its bytes do not fit its fingerprint): take a copy that is "
+      "whole, or run the study again",
+      path(), cell.label, runs()[i]);
 }
 
 std::vector<std::string> ResultFile::failure_reasons(const StoredCell& cell) const {
-  const h5::Handle dataset = h5::open_dataset(file_, "cells/" + cell.label + "/failure_reason");
+  const h5::Handle dataset =
+      h5::open_dataset(file_, formatted("cells/{}/failure_reason", cell.label));
   std::string texts(runs().size() * kFailureReasonBytes, '\0');
   h5::read(dataset, Element::u8, std::as_writable_bytes(std::span(texts)));
   std::vector<std::string> reasons;
@@ -110,11 +114,11 @@ std::vector<std::string> ResultFile::failure_reasons(const StoredCell& cell) con
 }
 
 std::vector<std::uint32_t> ResultFile::failure_steps(const StoredCell& cell) const {
-  return per_run<std::uint32_t>("cells/" + cell.label + "/failure_step", Element::u32);
+  return per_run<std::uint32_t>(formatted("cells/{}/failure_step", cell.label), Element::u32);
 }
 
 std::vector<double> ResultFile::cpu_seconds(const StoredCell& cell) const {
-  return per_run<double>("timing/" + cell.label + "/cpu_seconds", Element::f64);
+  return per_run<double>(formatted("timing/{}/cpu_seconds", cell.label), Element::f64);
 }
 
 double ResultFile::wall_seconds() const {
@@ -125,7 +129,7 @@ double ResultFile::wall_seconds() const {
 }
 
 std::vector<std::uint64_t> ResultFile::fingerprints(const StoredCell& cell) const {
-  return per_run<std::uint64_t>("cells/" + cell.label + "/fingerprint", Element::u64);
+  return per_run<std::uint64_t>(formatted("cells/{}/fingerprint", cell.label), Element::u64);
 }
 
 std::vector<SumGroup> ResultFile::sum_groups(const StoredCell& cell) const {
@@ -144,7 +148,7 @@ std::vector<std::uint64_t> ResultFile::sums(const SumGroup& group) const {
 std::vector<double> ResultFile::cpu_seconds_in_sums(const StoredCell& cell) const {
   const SummedRuns& sums = *description_.sums;
   std::vector<double> seconds(sums.last_run - sums.first_run);
-  h5::read(h5::open_dataset(file_, "timing/" + cell.label + "/" + std::string(format::kSumSeconds)),
+  h5::read(h5::open_dataset(file_, formatted("timing/{}/{}", cell.label, format::kSumSeconds)),
            Element::f64, std::as_writable_bytes(std::span(seconds)));
   return seconds;
 }
@@ -174,9 +178,10 @@ void ResultFile::read_column(const StoredCell& cell, std::string_view column, st
   const StoredCell& here = cells()[c];
   const Column* found = here.find(column);
   if (found == nullptr) {
-    throw RunError(path_.string() + ": cell '" + cell.label + "' has no column '" +
-                   std::string(column) +
-                   "' (record.columns did not ask for it): run the study again with it");
+    throw RunError(
+        "{}: cell '{}' has no column '{}' (record.columns did not ask for it): run the study again "
+        "with it",
+        path_, cell.label, column);
   }
   const auto k = static_cast<std::size_t>(found - here.columns.data());
   read_row(here.dataset_of(k), slabs_ ? &slabs_->cells[c].columns[k] : nullptr, found->element, i,

@@ -2,6 +2,7 @@
 #include "engine/records/result_layout.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "engine/records/fingerprint.hpp"
 #include "engine/records/h5.hpp"
 #include "engine/records/result_format.hpp"
@@ -31,19 +32,20 @@ class SlabFinder {
     const h5::Handle dataset = h5::open_dataset(file_, name);
     const auto place = h5::place(dataset);
     if (place && h5::stored_bytes(dataset) != runs * run_bytes) {
-      throw StudyError(path_.string() + ": damaged ('" + name +
-                       "' is not as long as its axes): run the study again");
+      throw StudyError("{}: damaged ('{}' is not as long as its axes): run the study again", path_,
+                       name);
     }
     if (!place) {
-      throw StudyError(path_.string() + ": '" + name +
-                       "' is not in one piece (another program rewrote the file): "
-                       "use the file as montecarta wrote it");
+      throw StudyError(
+          "{}: '{}' is not in one piece (another program rewrote the file): use the file as "
+          "montecarta wrote it",
+          path_, name);
     }
     return {*place, run_bytes, runs};
   }
 
   CellSlabs find(const StoredCell& cell) const {
-    const std::string group = "cells/" + cell.label + "/";
+    const std::string group = formatted("cells/{}/", cell.label);
     CellSlabs slabs;
     slabs.usual_columns = cell.usual_columns;
     for (std::size_t c = 0; c < cell.columns.size(); ++c) {
@@ -51,13 +53,13 @@ class SlabFinder {
                                    c < cell.usual_columns ? runs_ : full_runs_));
     }
     if (!cell.full().empty()) {
-      slabs.full_fingerprint =
-          find(group + format::kFull + "/fingerprint", sizeof(std::uint64_t), full_runs_);
+      slabs.full_fingerprint = find(formatted("{}{}/fingerprint", group, format::kFull),
+                                    sizeof(std::uint64_t), full_runs_);
     }
     slabs.failure_reason = find(group + "failure_reason", kFailureReasonBytes);
     slabs.failure_step = find(group + "failure_step", sizeof(std::uint32_t));
     slabs.fingerprint = find(group + "fingerprint", sizeof(std::uint64_t));
-    slabs.cpu_seconds = find("timing/" + cell.label + "/cpu_seconds", sizeof(double));
+    slabs.cpu_seconds = find(formatted("timing/{}/cpu_seconds", cell.label), sizeof(double));
     slabs.status = find(group + "status", 1);
     return slabs;
   }
@@ -102,9 +104,9 @@ ResultSlabs find_slabs(const std::filesystem::path& path, const ResultDescriptio
   for (std::size_t c = 0; description.sums && c < description.cells.size(); ++c) {
     const SummedRuns& sums = *description.sums;
     const std::string& label = description.cells[c].label;
-    slabs.sums.push_back(finder.find(std::string(format::kSums) + "/" + label,
+    slabs.sums.push_back(finder.find(formatted("{}/{}", format::kSums, label),
                                      sums.words[c] * sizeof(std::uint64_t), 1));
-    slabs.sum_seconds.push_back(finder.find("timing/" + label + "/" + format::kSumSeconds,
+    slabs.sum_seconds.push_back(finder.find(formatted("timing/{}/{}", label, format::kSumSeconds),
                                             sizeof(double), sums.last_run - sums.first_run));
   }
   return slabs;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/records/result_schema.hpp"
 
+#include "engine/formatted.hpp"
 #include "engine/records/result_format.hpp"
 #include "engine/records/run_record.hpp"
 #include "engine/records/structure.hpp"
@@ -95,7 +96,8 @@ std::string member_name(const ReferencePath& path, std::size_t /*i*/) { return p
 std::string member_name(const OwnDrive& /*drive*/, std::size_t i) {
   constexpr std::size_t kDigits = 5;
   const std::string number = std::to_string(i);
-  return "drive_" + std::string(kDigits - std::min(kDigits, number.size()), '0') + number;
+  return formatted("drive_{}{}", std::string(kDigits - std::min(kDigits, number.size()), '0'),
+                   number);
 }
 void take_name(const std::string& name, ReferencePath& path) { path.name = name; }
 void take_name(const std::string& /*name*/, OwnDrive& /*drive*/) {}

@@ -2,6 +2,7 @@
 #include "engine/records/run_record.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "engine/records/fingerprint.hpp"
 #include "engine/records/result_format.hpp"
 
@@ -26,16 +27,17 @@ Column column_of(const ColumnKind& kind, const Cell& cell) {
 /// of its cell, or belongs to no group of columns.
 void require_new(const OwnColumn& own, const std::vector<std::string>& declared, const Cell& cell) {
   const auto refuse = [&](const std::string& problem) {
-    throw StudyError("filter " + cell.filter + ": its column " + own.name + " " + problem +
-                     " in Capabilities::own_columns");
+    throw StudyError("filter {}: its column {} {} in Capabilities::own_columns", cell.filter,
+                     own.name, problem);
   };
   if (std::ranges::count(column_table(), own.name, &ColumnKind::name) > 0 ||
       std::ranges::count(format::kBesideColumns, own.name) > 0 ||
       std::ranges::count(declared, own.name) > 0 || own.name.find('/') != std::string::npos)
     refuse("(there is one already, or it has a slash): give it another name");
   if (std::ranges::count(column_groups(), own.group, &ColumnGroup::name) == 0)
-    refuse("is of the group " + own.group +
-           " (montecarta list columns has no such group): give it another group");
+    refuse(formatted(
+        "is of the group {} (montecarta list columns has no such group): give it another group",
+        own.group));
 }
 
 }  // namespace

@@ -28,8 +28,8 @@ constexpr std::size_t kTailWords = 2;  // words: fingerprint of the file, finger
 constexpr std::size_t kSuperblockBytes = 52;  // contains the end address in every version
 
 [[noreturn]] void refuse(const std::filesystem::path& path, const std::string& why) {
-  throw StudyError(path.string() + ": damaged (" + why +
-                   "): take a copy that is whole, or run the study again");
+  throw StudyError("{}: damaged ({}): take a copy that is whole, or run the study again", path,
+                   why);
 }
 
 [[noreturn]] void refuse_other(const std::filesystem::path& path) {
@@ -155,9 +155,10 @@ Seal check_seal(const std::filesystem::path& path) {
   if (end > size) refuse(path, "it was cut short, or its superblock has changed");
   const Words seal = read_seal(file, end, size);
   if (seal[1] != kVersion) {
-    throw StudyError(path.string() + ": has a seal of version " + std::to_string(seal[1]) +
-                     " (this program knows version " + std::to_string(kVersion) +
-                     "): use the montecarta that wrote it");
+    throw StudyError(
+        "{}: has a seal of version {} (this program knows version {}): use the montecarta that "
+        "wrote it",
+        path, seal[1], kVersion);
   }
   const std::uint64_t stored = seal[seal.size() - kTailWords];
   if (fingerprint_outside(file, ranges_of(seal, end, path), end) != stored) {

@@ -2,6 +2,7 @@
 #include "engine/records/shard.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 
 #include <algorithm>
 #include <span>
@@ -108,10 +109,10 @@ void require_equal(const Shard& a, const Shard& b, std::uint64_t run) {
     if (read_value<std::uint64_t>(file_a, slabs_a[i].at(a.index(run))) ==
         read_value<std::uint64_t>(file_b, slabs_b[i].at(b.index(run))))
       continue;
-    throw StudyError(b.path.string() + ": run " + std::to_string(run) + " differs from that in " +
-                     a.path.string() +
-                     " (made from other sources, by another compiler or C library, or damaged; "
-                     "'montecarta info' tells): leave one of them out");
+    throw StudyError(
+        "{}: run {} differs from that in {} (made from other sources, by another compiler or C "
+        "library, or damaged; 'montecarta info' tells): leave one of them out",
+        b.path, run, a.path);
   }
 }
 
@@ -125,8 +126,9 @@ void require_whole(const PosixFile& file, const Shard& shard, std::uint64_t run,
   for (const CellSlabs& cell : shard.slabs.cells)
     whole = whole && run_is_whole(file, cell, shard.index(run), buffer);
   if (whole) return;
-  throw StudyError(shard.path.string() + ": run " + std::to_string(run) +
-                   " is damaged (its bytes do not fit its fingerprint): compute this shard anew");
+  throw StudyError(
+      "{}: run {} is damaged (its bytes do not fit its fingerprint): compute this shard anew",
+      shard.path, run);
 }
 
 std::vector<ByteRange> written_later(const ResultSlabs& slabs) {
@@ -168,15 +170,12 @@ void refuse_gaps(const std::vector<std::string>& gaps, std::uint64_t missing, st
   for (std::size_t i = 0; i < gaps.size(); ++i) {
     named += (i == 0 ? "" : ", ") + gaps[i];
     if (i < 3)
-      commands +=
-          "\n  montecarta run study.ini -o missing_" + std::to_string(i) + ".h5 --runs " + gaps[i];
+      commands += formatted("\n  montecarta run study.ini -o missing_{}.h5 --runs {}", i, gaps[i]);
   }
-  throw StudyError("merge: runs " + named + " are in none of the shards (" +
-                   std::to_string(missing) + " of " + std::to_string(runs) +
-                   " missing; nothing was written): compute them, then merge again:\n  montecarta "
-                   "info " +
-                   shard.string() + " --text > study.ini" + commands +
-                   (gaps.size() > 3 ? "\n  ..." : ""));
+  throw StudyError(
+      "merge: runs {} are in none of the shards ({} of {} missing; nothing was written): compute "
+      "them, then merge again:\n  montecarta info {} --text > study.ini{}{}",
+      named, missing, runs, shard, commands, gaps.size() > 3 ? "\n  ..." : "");
 }
 
 }  // namespace montecarta::engine

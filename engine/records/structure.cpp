@@ -2,6 +2,7 @@
 #include "engine/records/structure.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "engine/records/fingerprint.hpp"
 #include "engine/records/result_format.hpp"
 #include "engine/text/visible_text.hpp"
@@ -38,7 +39,7 @@ std::string fingerprint_of(const std::string& text) {
 }
 
 std::string line_of(const Object& object) {
-  return object.name + "\t" + object.kind + "\t" + object.fingerprint + "\n";
+  return formatted("{}\t{}\t{}\n", object.name, object.kind, object.fingerprint);
 }
 
 /// Returns whether the elements of a dataset are part of the structure. Runs have fingerprints of
@@ -54,7 +55,7 @@ std::string kind_of(const h5::Handle& dataset) {
   for (const auto length : h5::shape(dataset)) {
     axes += (axes.empty() ? "" : ", ") + std::to_string(length);
   }
-  return h5::type_name(dataset) + " {" + axes + "}";
+  return formatted("{} {{{}}}", h5::type_name(dataset), axes);
 }
 
 std::string contents_of(const h5::Handle& dataset) {
@@ -79,7 +80,7 @@ void add_objects(const h5::Handle& group, const std::string& name, std::size_t d
       {name.empty() ? "/" : name, "group", fingerprint_of(h5::attributes_text(group))});
   if (depth == kDeepest) return;
   for (const std::string& member : h5::members(group)) {
-    const std::string inside = name + "/" + member;
+    const std::string inside = formatted("{}/{}", name, member);
     if (inside == kName) continue;
     if (h5::is_group(group, member)) {
       add_objects(h5::open_group(group, member), inside, depth + 1, objects);
@@ -123,12 +124,12 @@ std::vector<Object> objects_from(std::string_view text) {
 
 /// The first difference, such as "'/cells/a/nis' is gone"; empty if there is none.
 std::string difference(const std::vector<Object>& stored, const std::vector<Object>& found) {
-  const auto quoted = [](const Object& object) { return "'" + visible(object.name) + "' "; };
+  const auto quoted = [](const Object& object) { return formatted("'{}' ", visible(object.name)); };
   for (const Object& object : stored) {
     const auto same = std::ranges::find(found, object.name, &Object::name);
     if (same == found.end()) return quoted(object) + "is gone";
     if (same->kind != object.kind)
-      return quoted(object) + "is " + same->kind + ", it was " + visible(object.kind);
+      return formatted("{}is {}, it was {}", quoted(object), same->kind, visible(object.kind));
     if (same->fingerprint != object.fingerprint)
       return quoted(object) + "has other attributes or contents";
   }
@@ -156,8 +157,10 @@ void put_structure(const h5::Handle& file) {
 void check_structure(const h5::Handle& file, std::uint64_t minor_version,
                      const std::filesystem::path& path) {
   const auto refuse = [&](const std::string& why) {
-    throw StudyError(path.string() + ": changed by another program (" + why +
-                     "): take the file as montecarta wrote it, or run the study again");
+    throw StudyError(
+        "{}: changed by another program ({}): take the file as montecarta wrote it, or run the "
+        "study again",
+        path, why);
   };
   const bool is_there = h5::has(file, "provenance") &&
                         h5::has(h5::open_group(file, "provenance"), format::kStructure);
@@ -166,7 +169,7 @@ void check_structure(const h5::Handle& file, std::uint64_t minor_version,
     const std::string why = difference(stored, objects_in(file));
     if (!why.empty()) refuse(why);
   } else if (minor_version >= format::kMinorOfStructure) {
-    refuse("'" + kName + "' is gone");
+    refuse(formatted("'{}' is gone", kName));
   }
 }
 

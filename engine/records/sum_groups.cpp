@@ -2,6 +2,7 @@
 #include "engine/records/sum_groups.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "engine/records/check_file.hpp"
 #include "engine/records/open_result.hpp"
 #include "engine/records/result_format.hpp"
@@ -161,10 +162,10 @@ void require_equal_groups(const SumShard& a, std::size_t g, const SumShard& b, s
     if (left.words == right.words && head_words(left) == head_words(right) &&
         read_sums(file_a, left) == read_sums(file_b, right))
       continue;
-    throw StudyError(b.path.string() + ": the sums from run " + std::to_string(right.first_run) +
-                     " on differ from those in " + a.path.string() +
-                     " (made from other sources, by another compiler or C library; 'montecarta "
-                     "info' tells): leave one of them out");
+    throw StudyError(
+        "{}: the sums from run {} on differ from those in {} (made from other sources, by another "
+        "compiler or C library; 'montecarta info' tells): leave one of them out",
+        b.path, right.first_run, a.path);
   }
 }
 
@@ -202,7 +203,7 @@ void require_all_groups(const std::vector<Source>& sources, std::uint64_t first_
     if (sources[k].shard != nullptr) continue;
     const std::uint64_t begin = first_run + k * kRunsOfAGroup;
     const std::uint64_t end = std::min(begin + kRunsOfAGroup, last_run);
-    gaps.push_back(std::to_string(begin) + ":" + std::to_string(end));
+    gaps.push_back(formatted("{}:{}", begin, end));
     missing += end - begin;
   }
   if (missing > 0) refuse_gaps(gaps, missing, last_run - first_run, shard);

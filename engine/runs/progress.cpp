@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/runs/progress.hpp"
 
+#include "engine/formatted.hpp"
 #include "engine/text/number_text.hpp"
 #include "engine/text/wrapped_text.hpp"
 
@@ -49,16 +50,16 @@ RunCounts& RunCounts::operator+=(const RunCounts& other) {
 
 std::string progress_line(const RunCounts& counts, std::uint64_t earlier, double seconds) {
   // Rounded down, so that 100 % means that no run is left.
-  std::string line = print("%3.0f %%  ", std::floor(100.0 * share(counts))) +
-                     std::to_string(counts.ended()) + '/' + std::to_string(counts.total()) +
-                     " runs";
-  if (counts.failed > 0) line += ", " + std::to_string(counts.failed) + " failed";
+  std::string line =
+      formatted("{}{}/{} runs", print("%3.0f %%  ", std::floor(100.0 * share(counts))),
+                counts.ended(), counts.total());
+  if (counts.failed > 0) line += formatted(", {} failed", counts.failed);
   const std::uint64_t here = counts.ended() - earlier;
   if (here == 0 || !(seconds > 0.0)) return line;
   const double rate = static_cast<double>(here) / seconds;
   line += rate >= 0.1 ? print(", %.3g/s", rate) : print(", %.3g/h", rate * 3600.0);
-  if (counts.missing == 0) return line + " in " + duration_text(seconds);
-  return line + ", " + duration_text(static_cast<double>(counts.missing) / rate) + " left";
+  if (counts.missing == 0) return formatted("{} in {}", line, duration_text(seconds));
+  return formatted("{}, {} left", line, duration_text(static_cast<double>(counts.missing) / rate));
 }
 
 std::string with_bar(const std::string& line, const RunCounts& counts, std::size_t width) {
@@ -67,7 +68,7 @@ std::string with_bar(const std::string& line, const RunCounts& counts, std::size
   if (room < kNarrowestBar) return line.substr(0, width);
   const std::size_t length = std::min(room, kWidestBar);
   const auto filled = static_cast<std::size_t>(share(counts) * static_cast<double>(length));
-  return '[' + std::string(filled, '#') + std::string(length - filled, '.') + "] " + line;
+  return formatted("[{}{}] {}", std::string(filled, '#'), std::string(length - filled, '.'), line);
 }
 
 double plain_interval(double seconds) {

@@ -2,6 +2,7 @@
 #include "engine/runs/recompute.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "engine/records/recorder.hpp"
 #include "engine/runs/worker.hpp"
 
@@ -45,8 +46,7 @@ std::string position_text(const Column& column, std::size_t i) {
   std::size_t block = column.elements();
   for (std::size_t a = 0; a < column.axes.size(); ++a) {
     block /= column.shape[a];
-    text += (a == 0 ? "" : ", ") + std::string(name_of(column.axes[a])) + " " +
-            std::to_string(i / block);
+    text += formatted("{}{} {}", a == 0 ? "" : ", ", name_of(column.axes[a]), i / block);
     i %= block;
   }
   return text;
@@ -63,10 +63,10 @@ std::optional<std::string> compare(const Column& column, Bytes stored, Bytes com
     first = std::min(first, i);
     ++count;
   }
-  return column.name + " differs in " + std::to_string(count) + " of " +
-         std::to_string(column.elements()) + " numbers, first at (" + position_text(column, first) +
-         "): stored " + text_of(stored, column.element, first) + ", computed " +
-         text_of(computed, column.element, first);
+  return formatted("{} differs in {} of {} numbers, first at ({}): stored {}, computed {}",
+                   column.name, count, column.elements(), position_text(column, first),
+                   text_of(stored, column.element, first),
+                   text_of(computed, column.element, first));
 }
 
 std::vector<std::byte> read_run(const PosixFile& file, const Slab& slab, std::size_t run_index) {
@@ -126,8 +126,9 @@ std::optional<std::string> Recomputation::difference(StoredRun which) const {
   std::vector<std::byte> buffer;
   const bool whole = truth_is_whole(file_, slabs_, which.run_index, buffer) &&
                      run_is_whole(file_, slabs_.cells[which.cell], which.run_index, buffer);
-  return cell.label + ", run " + std::to_string(run) + ": " + *differs +
-         (whole ? "" : " (and the stored bytes do not fit their fingerprint: damaged, or altered)");
+  return formatted(
+      "{}, run {}: {}{}", cell.label, run, *differs,
+      whole ? "" : " (and the stored bytes do not fit their fingerprint: damaged, or altered)");
 }
 
 std::optional<std::string> Recomputation::difference(const Drive& drive,

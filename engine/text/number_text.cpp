@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/text/number_text.hpp"
 
+#include "engine/formatted.hpp"
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -36,23 +38,25 @@ std::string readable(double value, int digits) {
 std::string compact(double value) {
   if (!std::isfinite(value) || std::abs(value) < 1e4) return readable(value);
   const int power = magnitude(value);
-  return printed("%.*f", 2, value / std::pow(10.0, power)) + "e" + std::to_string(power);
+  return formatted("{}e{}", printed("%.*f", 2, value / std::pow(10.0, power)), power);
 }
 
 std::string with_error(double mean, double standard_error) {
   if (std::isnan(mean) || !std::isfinite(standard_error) || standard_error == 0.0) {
     return readable(mean);
   }
-  if (std::abs(mean) >= 1e6) return readable(mean) + " +- " + readable(standard_error, 2);
+  if (std::abs(mean) >= 1e6)
+    return formatted("{} +- {}", readable(mean), readable(standard_error, 2));
   const int decimals = std::clamp(1 - magnitude(standard_error), 0, 12);
-  return printed("%.*f", decimals, mean) + " +- " + printed("%.*f", decimals, standard_error);
+  return formatted("{} +- {}", printed("%.*f", decimals, mean),
+                   printed("%.*f", decimals, standard_error));
 }
 
 std::string with_error_to(int decimals, double mean, double standard_error) {
   if (std::isnan(mean)) return "-";
   std::string text = printed("%.*f", decimals, mean);
   if (std::isnan(standard_error)) return text;
-  return text + " +- " + printed("%.*f", decimals, standard_error);
+  return formatted("{} +- {}", text, printed("%.*f", decimals, standard_error));
 }
 
 std::string fixed_seconds(double time) { return printed("%.*f", 1, time) + " s"; }

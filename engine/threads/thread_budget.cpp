@@ -2,6 +2,7 @@
 #include "engine/threads/thread_budget.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -41,7 +42,7 @@ double tightest_upwards(fs::path place, const std::string& group) {
 /// version 2 there are no controllers.
 std::vector<fs::path> mounts_of(const std::string& controllers, const fs::path& mounts) {
   if (controllers.empty()) return {mounts};
-  const bool limits_cpu = ("," + controllers + ",").find(",cpu,") != std::string::npos;
+  const bool limits_cpu = formatted(",{},", controllers).find(",cpu,") != std::string::npos;
   return limits_cpu ? std::vector{mounts / controllers, mounts / "cpu"} : std::vector<fs::path>();
 }
 
@@ -52,9 +53,8 @@ int parse_threads(const std::string& place, std::string_view text, const char* r
   const auto [stop, error] = std::from_chars(text.data(), end, threads);
   if (error == std::errc() && stop == end && threads >= 1 && threads <= kMostThreads)
     return threads;
-  throw StudyError(place + ": '" + std::string(text) +
-                   "' (a number of threads is a whole number from 1 to " +
-                   std::to_string(kMostThreads) + "): " + remedy);
+  throw StudyError("{}: '{}' (a number of threads is a whole number from 1 to {}): {}", place, text,
+                   kMostThreads, remedy);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include "experiments/commands/arguments.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "engine/records/provenance.hpp"
 #include "engine/text/visible_text.hpp"
 #include "engine/text/wrapped_text.hpp"
@@ -156,31 +157,32 @@ po::parsed_options parsed(const CommandSpec& spec, const Texts& words,
   try {
     return po::command_line_parser(words).options(all).positional(positional).style(style).run();
   } catch (const po::unknown_option& error) {
-    throw StudyError(error.get_option_name() + ": unknown option (montecarta " + spec.name +
-                     " has none of that name): " +
+    throw StudyError("{}: unknown option (montecarta {} has none of that name): {}",
+                     error.get_option_name(), spec.name,
                      nearest_spelling(error.get_option_name(), spellings_of(spec)));
   } catch (const po::error& error) {
-    throw StudyError(spec.name + ": " + error.what() +
-                     " (see the options below --help): correct the command");
+    throw StudyError("{}: {} (see the options below --help): correct the command", spec.name,
+                     error.what());
   }
 }
 
 /// Text of an option with its value: "-o OUT.h5".
 std::string spelling_of(const OptionSpec& option) {
-  return (option.letter.empty() ? "--" + option.name : "-" + option.letter) + " " + option.value;
+  return formatted("{} {}", option.letter.empty() ? "--" + option.name : "-" + option.letter,
+                   option.value);
 }
 
 /// Checks the values of an option that was given `times` times.
 void check_values(const OptionSpec& option, const Texts& values, std::size_t times) {
   if (times > 1 && !option.repeatable) {
-    throw StudyError("--" + option.name + ": given " + std::to_string(times) +
-                     " times (once is meant): remove all but one");
+    throw StudyError("--{}: given {} times (once is meant): remove all but one", option.name,
+                     times);
   }
   if (option.value.find('|') == std::string::npos) return;
   const Texts known = split(option.value, '|');
   item_called(
       values.front(), known, std::identity(),
-      "--" + option.name + " " + values.front() + ": not known (one of " + joined(known) + ")");
+      formatted("--{} {}: not known (one of {})", option.name, values.front(), joined(known)));
 }
 
 }  // namespace
@@ -204,8 +206,8 @@ Arguments::Arguments(const CommandSpec& spec, std::vector<std::string> words)
   }
   for (const OptionSpec& option : spec.options) {
     if (has(option.name) || !option.is_required) continue;
-    throw StudyError(spec.name + ": " + spelling_of(option) + " is missing (" + option.meaning +
-                     "): write montecarta " + spec.usage);
+    throw StudyError("{}: {} is missing ({}): write montecarta {}", spec.name, spelling_of(option),
+                     option.meaning, spec.usage);
   }
 }
 
@@ -215,17 +217,17 @@ void Arguments::check_operands(const CommandSpec& spec) const {
   Texts names;
   for (const OperandSpec& operand : spec.operands) {
     if (operands_.size() < least + operand.least) {
-      throw StudyError(spec.name + ": " + operand.name +
-                       " is missing (nothing to work on): see montecarta " + spec.name + " --help");
+      throw StudyError("{}: {} is missing (nothing to work on): see montecarta {} --help",
+                       spec.name, operand.name, spec.name);
     }
     least += operand.least;
     most = operand.most > 1000 ? operand.most : most + operand.most;
     names.push_back(operand.name);
   }
   if (operands_.size() <= most) return;
-  throw StudyError(operands_[most] + ": stray argument (montecarta " + spec.name + " takes " +
-                   (names.empty() ? "options only" : joined(names, " ")) +
-                   "): remove it, or put its option before it");
+  throw StudyError(
+      "{}: stray argument (montecarta {} takes {}): remove it, or put its option before it",
+      operands_[most], spec.name, names.empty() ? "options only" : joined(names, " "));
 }
 
 std::optional<std::string> Arguments::text(const std::string& option) const {
@@ -244,8 +246,8 @@ std::optional<double> Arguments::number(const std::string& option, double least,
   if (!given) return std::nullopt;
   const auto value = to_number(*given);
   if (value && *value >= least && *value <= most) return value;
-  throw StudyError("--" + option + " " + *given + ": not usable (a number from " + to_text(least) +
-                   " to " + to_text(most) + " is needed): correct it");
+  throw StudyError("--{} {}: not usable (a number from {} to {} is needed): correct it", option,
+                   *given, to_text(least), to_text(most));
 }
 
 std::optional<std::uint64_t> Arguments::count(const std::string& option, std::uint64_t least,
@@ -254,21 +256,20 @@ std::optional<std::uint64_t> Arguments::count(const std::string& option, std::ui
   if (!given) return std::nullopt;
   const auto value = to_count(*given);
   if (value && *value >= least && *value <= most) return value;
-  throw StudyError("--" + option + " " + *given + ": not usable (a whole number from " +
-                   std::to_string(least) + " to " + std::to_string(most) +
-                   " is needed): correct it");
+  throw StudyError("--{} {}: not usable (a whole number from {} to {} is needed): correct it",
+                   option, *given, least, most);
 }
 
 std::string help_text(const CommandSpec& spec) {
   TextPairs options;
   for (const OptionSpec& option : spec.options) {
-    const std::string letter = option.letter.empty() ? "    " : "-" + option.letter + ", ";
+    const std::string letter = option.letter.empty() ? "    " : formatted("-{}, ", option.letter);
     const std::string value = option.value.empty() ? "" : " " + option.value;
-    options.emplace_back(letter + "--" + option.name + value, option.meaning);
+    options.emplace_back(formatted("{}--{}{}", letter, option.name, value), option.meaning);
   }
   options.emplace_back("    --help", "print this text");
-  return wrapped("usage: montecarta " + spec.usage + (spec.options.empty() ? "" : " [options]") +
-                     "\n\n" + spec.summary + "\n\noptions:\n",
+  return wrapped(formatted("usage: montecarta {}{}\n\n{}\n\noptions:\n", spec.usage,
+                           spec.options.empty() ? "" : " [options]", spec.summary),
                  output_width()) +
          listing(options) + wrapped("\n" + spec.details, output_width());
 }
@@ -304,9 +305,10 @@ ExternalPrograms programs_of(const Study& study, const Arguments& arguments) {
   if (arguments.has(kAllowExternal)) return ExternalPrograms::allowed;
   for (const CellSpec& cell : study.cells) {
     if (!starts_program(*cell.filter)) continue;
-    throw StudyError(cell.place + ": cell " + cell.label +
-                     " is a program, which runs with all that you may do: " + cell_line(cell) +
-                     " (nothing is started unasked): if you trust it, add --" + kAllowExternal);
+    throw StudyError(
+        "{}: cell {} is a program, which runs with all that you may do: {} (nothing is started "
+        "unasked): if you trust it, add --{}",
+        cell.place, cell.label, cell_line(cell), kAllowExternal);
   }
   return ExternalPrograms::refused;
 }

@@ -2,6 +2,7 @@
 #include "experiments/commands/array_index.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "engine/namespaces.hpp"
 #include "experiments/text/words.hpp"
 
@@ -54,11 +55,11 @@ std::string remedy_of(const TaskVariable& variable, std::uint64_t shards) {
 /// The number of a task does not fit the shards, which the array must have.
 [[noreturn]] void refuse_number(const TaskVariable& variable, const char* name,
                                 std::uint64_t shards) {
-  throw StudyError(std::string(name) + "=" + value_of(name) + ": does not fit --shard auto/" +
-                   std::to_string(shards) + " (tasks are numbered from " +
-                   std::to_string(variable.first) + " to " +
-                   std::to_string(variable.first + shards - 1) + "): start the array with " +
-                   remedy_of(variable, shards) + ", or give --shard I/" + std::to_string(shards));
+  throw StudyError(
+      "{}={}: does not fit --shard auto/{} (tasks are numbered from {} to {}): start the array "
+      "with {}, or give --shard I/{}",
+      name, value_of(name), shards, variable.first, variable.first + shards - 1,
+      remedy_of(variable, shards), shards);
 }
 
 /// The index of a task by the number that a variable holds. Throws StudyError if an array of
@@ -102,23 +103,22 @@ std::string with_array_index(const std::string& shard) {
     const auto found = index_by(variable, *shards);
     if (!found) continue;
     if (source != nullptr && *found != index) {
-      throw StudyError(std::string(source->name) + "=" + value_of(source->name) + " and " +
-                       variable.name + "=" + value_of(variable.name) + ": --shard " + shard +
-                       " is shard " + std::to_string(index) + " by one and " +
-                       std::to_string(*found) +
-                       " by the other: unset the one that is not of this array");
+      throw StudyError(
+          "{}={} and {}={}: --shard {} is shard {} by one and {} by the other: unset the one that "
+          "is not of this array",
+          source->name, value_of(source->name), variable.name, value_of(variable.name), shard,
+          index, *found);
     }
     source = &variable;
     index = *found;
   }
   if (source == nullptr) {
-    throw StudyError("--shard " + shard + ": this process is no task of an array (none of " +
-                     names_of_variables() +
-                     " is set): start it by a scheduler's array, or give "
-                     "--shard I/" +
-                     std::to_string(*shards));
+    throw StudyError(
+        "--shard {}: this process is no task of an array (none of {} is set): start it by a "
+        "scheduler's array, or give --shard I/{}",
+        shard, names_of_variables(), *shards);
   }
-  return std::to_string(index) + "/" + std::to_string(*shards);
+  return formatted("{}/{}", index, *shards);
 }
 
 }  // namespace montecarta::experiments

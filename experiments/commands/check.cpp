@@ -4,6 +4,7 @@
 #include "analysis/render/tables/terminal.hpp"
 #include "analysis/study/stored_sums.hpp"
 #include "analysis/study/text_table.hpp"
+#include "engine/formatted.hpp"
 #include "engine/records/fingerprint.hpp"
 #include "engine/records/posix_file.hpp"
 #include "engine/records/result_description.hpp"
@@ -274,7 +275,7 @@ std::string filters_of(const Study& study) {
     const auto is_of_it = [&](const CellSpec& other) { return other.filter == cell.filter; };
     if (&*std::ranges::find_if(study.cells, is_of_it) != &cell) continue;
     const auto n_cells = std::ranges::count_if(study.cells, is_of_it);
-    names.push_back(n_cells == 1 ? name : name + " (" + std::to_string(n_cells) + " cells)");
+    names.push_back(n_cells == 1 ? name : formatted("{} ({} cells)", name, n_cells));
   }
   return joined(names);
 }
@@ -284,10 +285,11 @@ TextPairs disk_limit(const Costs& costs, int threads, std::optional<double> stat
   const double rate = stated.value_or(kWritingRate * threads);
   const double needed = costs.written / (costs.cpu_seconds / threads);
   if (needed <= rate) return {};
-  return {{"disk", "the limit: runs are made at " + bytes_text(needed) + "/s and written at " +
-                       bytes_text(rate) + (stated ? "/s (--disk-rate)" : "/s at most") +
-                       ", which takes about " + duration_text(costs.written / rate) +
-                       ": store fewer columns, or choose record.rate = scan"}};
+  return {{"disk",
+           formatted("the limit: runs are made at {}/s and written at {}/s{}, which takes "
+                     "about {}: store fewer columns, or choose record.rate = scan",
+                     bytes_text(needed), bytes_text(rate), stated ? " (--disk-rate)" : " at most",
+                     duration_text(costs.written / rate))}};
 }
 
 /// Prints the overview of a study: title, time, size of the file, filters, runs.
@@ -299,12 +301,13 @@ void print_summary(const Study& study, const StudyPlan& plan, const Costs& costs
   const std::string part = plan.runs_here() == plan.runs ? "" : " of " + std::to_string(plan.runs);
   const std::string cells = std::to_string(plan.cells.size());
   TextPairs items{
-      {"time", (study.until ? "at most " : "about ") + duration_text(costs.cpu_seconds / threads) +
-                   " on " + std::to_string(threads) + " threads (by a short trial)"},
+      {"time",
+       formatted("{}{} on {} threads (by a short trial)", study.until ? "at most " : "about ",
+                 duration_text(costs.cpu_seconds / threads), threads)},
       {"file", (study.until ? "at most " : "") + bytes_text(costs.disk)},
       {"filters", filters_of(study)},
       {"runs", std::to_string(plan.runs_here()) + part +
-                   (plan.cells.size() == 1 ? "" : " for each of " + cells + " cells")},
+                   (plan.cells.size() == 1 ? "" : formatted(" for each of {} cells", cells))},
       {"memory", memory_text(costs.memory(threads))}};
   for (auto& item : disk_limit(costs, threads, disk_rate)) items.push_back(std::move(item));
   std::cout << wrapped(plan.title, output_width()) << "\n" << listing(items);
@@ -313,17 +316,16 @@ void print_summary(const Study& study, const StudyPlan& plan, const Costs& costs
 void print_details(const Study& study, const StudyPlan& plan) {
   const Itinerary& itinerary = plan.drives->itinerary();
   TextPairs details{{plan.drives->own_drives() > 0 ? "longest run" : "a run",
-                     std::to_string(itinerary.steps()) + " steps, " +
-                         std::to_string(itinerary.scans()) + " scans, " +
-                         duration_text(itinerary.step_time.back()) + " of driving, " +
-                         std::to_string(itinerary.landmarks.size()) + " landmarks"}};
+                     formatted("{} steps, {} scans, {} of driving, {} landmarks", itinerary.steps(),
+                               itinerary.scans(), duration_text(itinerary.step_time.back()),
+                               itinerary.landmarks.size())}};
   if (!study.logs.empty()) {
     const std::string kind = study.settings.text("association", "kind");
     details.emplace_back("association", kind + (kind == "known" ? ", by the identities of the log"
                                                                 : ", by the filters themselves"));
   }
   if (study.until) details.emplace_back("until", in_words(*study.until, plan.runs));
-  details.emplace_back("study", plan.name + ", seed " + std::to_string(plan.seed));
+  details.emplace_back("study", formatted("{}, seed {}", plan.name, plan.seed));
   details.emplace_back("SHA-256", sha256(plan.resolved_text));
   std::cout << "\ndetails\n" << listing(details);
 }

@@ -5,6 +5,7 @@
 #include "analysis/verdict/verdict.hpp"
 #include "engine/core/judgement.hpp"
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "engine/text/wrapped_text.hpp"
 #include "experiments/commands/arguments.hpp"
 #include "experiments/commands/commands.hpp"
@@ -25,7 +26,7 @@ std::vector<const Score*> scores_of(const Arguments& arguments, const ResultFile
   for (const std::string& name : split(*names, ',')) {
     scores.push_back(
         &item_called(name, all_scores(), &Score::name,
-                     "--metric " + name + ": no metric (runs have no number of that name)"));
+                     formatted("--metric {}: no metric (runs have no number of that name)", name)));
   }
   return scores;
 }
@@ -36,18 +37,19 @@ std::string baseline_of(const Arguments& arguments, const ResultFile& file) {
   for (const StoredCell& cell : file.cells()) labels.push_back(cell.label);
   const auto baseline = arguments.text("baseline");
   if (labels.size() == 1) {
-    throw StudyError(file.path().string() + ": has one cell, " + labels.front() +
-                     " (compare needs another one to compare it with): run a study of several "
-                     "cells, or judge the estimates of several estimators in one file");
+    throw StudyError(
+        "{}: has one cell, {} (compare needs another one to compare it with): run a study of "
+        "several cells, or judge the estimates of several estimators in one file",
+        file.path(), labels.front());
   }
   if (!baseline) {
     throw StudyError(
         "compare: --baseline CELL is needed (the others are compared with it): one of " +
         joined(labels));
   }
-  return item_called(*baseline, labels, std::identity(),
-                     "--baseline " + *baseline + ": no cell of " + file.path().string() +
-                         " (it must be one of them)");
+  return item_called(
+      *baseline, labels, std::identity(),
+      formatted("--baseline {}: no cell of {} (it must be one of them)", *baseline, file.path()));
 }
 
 void print_notes(const std::vector<std::string>& notes) {
@@ -81,9 +83,10 @@ void print_absent(std::span<const Score* const> scores, const Comparisons& compa
     if (std::ranges::find(comparisons.rows, score, &CellComparison::score) !=
         comparisons.rows.end())
       continue;
-    print_notes({std::string(score->name) + ": nothing to compare (" + comparisons.baseline +
-                 " or all other cells have no such number): montecarta info FILE.h5 says what is "
-                 "stored"});
+    print_notes(
+        {formatted("{}: nothing to compare ({} or all other cells have no such number): montecarta "
+                   "info FILE.h5 says what is stored",
+                   score->name, comparisons.baseline)});
   }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/study/frame.hpp"
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "experiments/commands/arguments.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/recordings/log_csv.hpp"
@@ -39,9 +40,9 @@ std::string name_of_run(std::uint64_t run, std::uint64_t runs) {
 std::string belief_text(const Study& study) {
   std::string text;
   for (const char* section : {"belief", "association"}) {
-    text += std::string("[") + section + "]\n";
+    text += formatted("[{}]\n", section);
     for (const auto& [key, value] : stated_settings(study.settings, section))
-      text += key + " = " + value + "\n";
+      text += formatted("{} = {}\n", key, value);
   }
   return text;
 }

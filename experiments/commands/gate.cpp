@@ -5,6 +5,7 @@
 #include "analysis/verdict/verdict.hpp"
 #include "engine/core/judgement.hpp"
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "engine/text/wrapped_text.hpp"
 #include "experiments/commands/arguments.hpp"
 #include "experiments/commands/commands.hpp"
@@ -21,7 +22,7 @@ const StoredCell& cell_to_judge(const Arguments& arguments, const ResultFile& fi
   const auto label = arguments.text("cell");
   if (!label && file.cells().size() == 1) return file.cells().front();
   return item_called(label.value_or(""), file.cells(), &StoredCell::label,
-                     (label ? "--cell " + *label + ": no cell of " + file.path().string()
+                     (label ? formatted("--cell {}: no cell of {}", *label, file.path())
                             : "gate: --cell CELL is needed") +
                          " (one of its filters is judged)");
 }
@@ -30,10 +31,10 @@ const StoredCell& cell_to_judge(const Arguments& arguments, const ResultFile& fi
 void require_all_runs(const ResultFile& file, const StoredCell& cell) {
   const RunCounts counts = count_status(file, cell);
   if (counts.missing == 0) return;
-  throw StudyError(file.path().string() + ": " + std::to_string(counts.missing) + " runs of cell " +
-                   cell.label +
-                   " are missing (those that ended first are no fair sample): finish the study "
-                   "with montecarta run ... --resume");
+  throw StudyError(
+      "{}: {} runs of cell {} are missing (those that ended first are no fair sample): finish the "
+      "study with montecarta run ... --resume",
+      file.path(), counts.missing, cell.label);
 }
 
 int code_of(GateAnswer answer) {
@@ -52,7 +53,7 @@ const char* name_of(GateAnswer answer) {
 /// empty if neither is so.
 std::string too_many(const Verdict& verdict, const Allowance& allowed) {
   const auto words = [](const std::string& what, std::uint64_t most) {
-    return " More " + what + " than are allowed (" + std::to_string(most) + ").";
+    return formatted(" More {} than are allowed ({}).", what, most);
   };
   if (verdict.failed > allowed.failed) return words("runs failed", allowed.failed);
   if (verdict.unusable > allowed.unusable) return words("samples are unusable", allowed.unusable);
@@ -122,8 +123,8 @@ int gate_command(const Arguments& arguments) {
   require_all_runs(file, stored);
   const CellAnalysis cell =
       analyze_cell(file, stored, kUsualLevel, file.runs().size(), parallel_of(arguments), within);
-  const GateAnswer answer =
-      at_place(place + ": cell " + stored.label, [&] { return gate(cell.verdict, allowed); });
+  const GateAnswer answer = at_place(formatted("{}: cell {}", place, stored.label),
+                                     [&] { return gate(cell.verdict, allowed); });
   if (arguments.has("json")) {
     std::cout << json_of(stored.label, cell.verdict, allowed, answer).dump(2) << "\n";
   } else {

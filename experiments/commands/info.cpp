@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/study/text_table.hpp"
+#include "engine/formatted.hpp"
 #include "engine/records/posix_file.hpp"
 #include "engine/records/seal.hpp"
 #include "engine/text/wrapped_text.hpp"
@@ -34,24 +35,23 @@ std::uint64_t runs_of_study(const ResultFile& file) {
 
 void print_study(const ResultFile& file) {
   const auto& sums = file.description().sums;
-  const std::string runs = sums ? std::to_string(sums->last_run - sums->first_run) + " of " +
-                                      std::to_string(file.study_runs()) + " in sums, the first " +
-                                      std::to_string(file.runs().size()) + " also in rows"
-                                : std::to_string(file.runs().size()) + " of " +
-                                      std::to_string(runs_of_study(file)) + ", of which " +
-                                      std::to_string(runs_done(file)) + " are done in every cell";
+  const std::string runs =
+      sums ? formatted("{} of {} in sums, the first {} also in rows",
+                       sums->last_run - sums->first_run, file.study_runs(), file.runs().size())
+           : formatted("{} of {}, of which {} are done in every cell", file.runs().size(),
+                       runs_of_study(file), runs_done(file));
   std::cout << wrapped(file.title(), output_width()) << "\n"
             << listing(
                    {{"runs", runs},
-                    {"a run", std::to_string(file.times().size()) + " time steps, " +
-                                  std::to_string(file.scan_times().size()) + " scans"},
+                    {"a run", formatted("{} time steps, {} scans", file.times().size(),
+                                        file.scan_times().size())},
                     {"size",
                      bytes_text(static_cast<double>(std::filesystem::file_size(file.path())))},
                     {"seal", check_seal(file.path()) == Seal::holds
                                  ? "holds"
                                  : "none: an older montecarta or another program wrote the file, "
                                    "which was checked when it was opened"},
-                    {"study", file.study_name() + ", seed " + std::to_string(file.seed())},
+                    {"study", formatted("{}, seed {}", file.study_name(), file.seed())},
                     {"SHA-256", file.study_sha256()}});
 }
 
@@ -84,7 +84,7 @@ void print_datasets(const std::vector<Dataset>& datasets, std::size_t indent) {
 void print_columns(const std::string& group, std::span<const Column> columns, std::size_t runs) {
   std::vector<Dataset> datasets;
   for (const Column& column : columns) {
-    const std::string units = column.units == "1" ? "" : " [" + column.units + "]";
+    const std::string units = column.units == "1" ? "" : formatted(" [{}]", column.units);
     datasets.push_back(
         {column.name, static_cast<double>(column.bytes() * runs), column.long_name + units});
   }
@@ -113,7 +113,7 @@ void print_datasets(const ResultFile& file) {
   for (const StoredCell& cell : file.cells()) {
     print_columns("/cells/" + cell.label, cell.usual(), runs);
     if (!cell.full().empty())
-      print_columns("/cells/" + cell.label + "/full", cell.full(), full_runs);
+      print_columns(formatted("/cells/{}/full", cell.label), cell.full(), full_runs);
   }
 }
 

@@ -4,6 +4,7 @@
 #include "analysis/verdict/verdict.hpp"
 #include "engine/core/judgement.hpp"
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "engine/records/h5.hpp"
 #include "engine/records/result_file.hpp"
 #include "engine/text/wrapped_text.hpp"
@@ -54,8 +55,8 @@ std::vector<double> windows_in(const std::string& list) {
   for (const std::string& text : split(list, ',')) {
     const auto window = to_number(text);
     if (!window || !(*window > 0.0) || (!windows.empty() && *window <= windows.back())) {
-      throw StudyError("--windows " + excerpt(list) +
-                       ": not a list of increasing lengths in s: write e.g. 1,10,60");
+      throw StudyError("--windows {}: not a list of increasing lengths in s: write e.g. 1,10,60",
+                       excerpt(list));
     }
     windows.push_back(*window);
   }
@@ -84,7 +85,7 @@ JudgingOptions judging_options(const Arguments& arguments) {
   return options;
 }
 
-/// What the files of estimates have in place of a truth, if none is named.
+/// The part of the files of estimates that replaces a truth, if none is named.
 OwnTruth own_truth_of(const std::string& estimates, const std::vector<std::string>& truths) {
   const CsvRows file(estimates);
   const OwnTruth found = own_truth_in(file.columns(), file.place());
@@ -95,10 +96,9 @@ OwnTruth own_truth_of(const std::string& estimates, const std::vector<std::strin
         "or columns error_x_m, ... instead of them; if these are innovations, say --innovations");
   }
   if (truths.empty() || found == OwnTruth::none) return found;
-  throw StudyError("--truth: not beside " + estimates + " (its columns begin with " +
-                   (found == OwnTruth::columns ? kTruthPrefix + ": it has a truth)"
-                                               : kErrorPrefix + ": it needs none)") +
-                   ": leave it out");
+  throw StudyError("--truth: not beside {} (its columns begin with {}: it {}): leave it out",
+                   estimates, found == OwnTruth::columns ? kTruthPrefix : kErrorPrefix,
+                   found == OwnTruth::columns ? "has a truth" : "needs none");
 }
 
 /// Throws StudyError if one of these options was given, which do not apply to `what`.
@@ -106,7 +106,7 @@ void refuse_options(const Arguments& arguments, std::span<const std::string_view
                     const std::string& what) {
   for (const std::string_view option : options) {
     if (!arguments.has(std::string(option))) continue;
-    throw StudyError("--" + std::string(option) + ": not beside " + what + ": leave it out");
+    throw StudyError("--{}: not beside {}: leave it out", option, what);
   }
 }
 
@@ -114,8 +114,9 @@ void refuse_options(const Arguments& arguments, std::span<const std::string_view
 std::unique_ptr<EstimateSource> arrays_of(const Arguments& arguments) {
   const std::vector<std::string>& operands = arguments.operands();
   if (operands.size() > 1) {
-    throw StudyError(operands[1] + ": one file of arrays is judged at a time (it has all runs): " +
-                     "judge the files apart");
+    throw StudyError(
+        "{}: one file of arrays is judged at a time (it has all runs): judge the files apart",
+        operands[1]);
   }
   constexpr std::array<std::string_view, 8> kOfFiles = {
       "truth", "keep", "pair", "truth-cov", "innovations", "gate", "interpolate", "longest-gap"};
@@ -148,12 +149,13 @@ std::unique_ptr<EstimateSource> pair_of(const Arguments& arguments,
   refuse_options(arguments, kOfTruths, "--pair (an estimator is in place of the truth)");
   JudgedFiles files = pair_files(arguments.operands(), {}, std::nullopt);
   if (files.cells.size() != 2) {
-    throw StudyError("--pair: needs two estimators (" + std::to_string(files.cells.size()) +
-                     (files.cells.size() == 1 ? " was" : " were") +
-                     " found): name the files of both, as montecarta judge --help shows");
+    throw StudyError(
+        "--pair: needs two estimators ({} {} found): name the files of both, as montecarta judge "
+        "--help shows",
+        files.cells.size(), files.cells.size() == 1 ? "was" : "were");
   }
   EstimatorFiles& first = files.cells.front();
-  pair = first.cell + " and " + files.cells.back().cell;
+  pair = formatted("{} and {}", first.cell, files.cells.back().cell);
   first.cell += "-" + files.cells.back().cell;
   check_label(first.cell);
   files.truth = std::move(files.cells.back().of_run);
@@ -167,9 +169,10 @@ std::unique_ptr<EstimateSource> source_of(const Arguments& arguments, JudgingOpt
   if (h5::is_hdf5(operands.front())) return arrays_of(arguments);
   const std::string ending = std::filesystem::path(operands.front()).extension().string();
   if (ending == ".h5" || ending == ".hdf5" || ending == ".mat") {
-    throw StudyError(operands.front() + ": is there no such file, or no HDF5 file (arrays are in " +
-                     "one): give its name; convert a .mat of version 7 by "
-                     "experiments/convert/estimates.py");
+    throw StudyError(
+        "{}: is there no such file, or no HDF5 file (arrays are in one): give its name; convert a "
+        ".mat of version 7 by experiments/convert/estimates.py",
+        operands.front());
   }
   if (arguments.has("innovations")) return innovations_of(arguments, options);
   if (options.gate) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/study/score_table.hpp"
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "engine/records/columns.hpp"
 #include "engine/text/wrapped_text.hpp"
 #include "experiments/commands/commands.hpp"
@@ -41,8 +42,8 @@ std::string fallback_text(const Parameter& option) {
 TextPairs options_text(std::span<const Parameter> options) {
   TextPairs items;
   for (const Parameter& option : options) {
-    items.emplace_back(option.key, option.meaning + "\n" + demand_of(option) + "; default " +
-                                       fallback_text(option));
+    items.emplace_back(option.key, formatted("{}\n{}; default {}", option.meaning,
+                                             demand_of(option), fallback_text(option)));
   }
   return items;
 }
@@ -70,7 +71,8 @@ std::string fallback_text(const Setting& setting) {
   std::string text;
   if (setting.fallback_of_kind.size() < 2) text = in_words(setting.fallback.value_or(kRequired));
   for (const auto& [kind, value] : setting.fallback_of_kind) {
-    text += (text.empty() ? "" : "; ") + in_words(value) + " if scenario.kind = " + kind;
+    text +=
+        formatted("{}{} if scenario.kind = {}", text.empty() ? "" : "; ", in_words(value), kind);
   }
   return text;
 }
@@ -80,7 +82,7 @@ TextPairs facts_of(const Setting& setting) {
   if (!setting.unit.empty() && setting.unit != "1") facts.emplace_back("unit", setting.unit);
   for (const auto& [section, key, values] : setting.conditions) {
     if (!values.empty())
-      facts.emplace_back("only if", section + "." + key + " = " + joined(values, " or "));
+      facts.emplace_back("only if", formatted("{}.{} = {}", section, key, joined(values, " or ")));
   }
   return facts;
 }
@@ -97,12 +99,13 @@ std::vector<ListEntry> settings() {
   for (const Setting& setting : study_settings()) {
     const std::string first = engine::first_sentence(setting.meaning);
     const std::size_t rest = std::min(first.size() + 2, setting.meaning.size());
-    entries.push_back({.name = setting.section + "." + setting.key,
-                       .summary = first,
-                       .facts = facts_of(setting),
-                       .more = setting.meaning.substr(rest),
-                       .heading = "[" + setting.section + "] " + kSectionTitles.at(setting.section),
-                       .short_name = setting.key});
+    entries.push_back(
+        {.name = formatted("{}.{}", setting.section, setting.key),
+         .summary = first,
+         .facts = facts_of(setting),
+         .more = setting.meaning.substr(rest),
+         .heading = formatted("[{}] {}", setting.section, kSectionTitles.at(setting.section)),
+         .short_name = setting.key});
   }
   return entries;
 }
@@ -120,8 +123,7 @@ std::vector<ListEntry> shipped_entries(const std::string& folder, const std::str
 ListEntry entry_of_world(const std::string& name, const std::string& path) {
   const World world = find_world(name);
   return {name,
-          std::to_string(world.landmarks.size()) + " landmarks, " +
-              std::to_string(world.waypoints.size()) + " way-points",
+          formatted("{} landmarks, {} way-points", world.landmarks.size(), world.waypoints.size()),
           {{"file", path}, {"in a study", "scenario.world = " + name}}};
 }
 
@@ -141,7 +143,7 @@ std::vector<ListEntry> metrics() {
   for (const Score& score : all_scores()) {
     const std::string units(score.units);
     entries.push_back({score.name,
-                       score.words + (units == "1" ? "" : " [" + units + "]"),
+                       score.words + (units == "1" ? "" : formatted(" [{}]", units)),
                        {{"better", score.better == Better::lower    ? "lower"
                                    : score.better == Better::higher ? "higher"
                                                                     : "neither lower nor higher"},
@@ -213,12 +215,13 @@ void list_all(const Listed& listed) {
     std::cout << listing(items, heading.empty() ? 0 : 2);
   }
   std::cout << wrapped(
-      "\nMore about one of them: montecarta list " + listed.name + " " + listed.example,
+      formatted("\nMore about one of them: montecarta list {} {}", listed.name, listed.example),
       output_width());
 }
 
 void describe(const ListEntry& entry) {
-  std::cout << wrapped(entry.name + ": " + entry.summary + "\n" + entry.more, output_width())
+  std::cout << wrapped(formatted("{}: {}\n{}", entry.name, entry.summary, entry.more),
+                       output_width())
             << "\n"
             << listing(entry.facts);
   for (const auto& [heading, items] : entry.tables)
@@ -240,9 +243,8 @@ void describe_all(const Listed& listed, const std::string& name) {
   }
   if (!is_first) return;
   const std::string nearest = nearest_spelling(name, known);
-  throw StudyError(name + ": not in the list of " + listed.name + " (see montecarta list " +
-                   listed.name +
-                   "): " + (nearest.starts_with("known") ? "choose one of them" : nearest));
+  throw StudyError("{}: not in the list of {} (see montecarta list {}): {}", name, listed.name,
+                   listed.name, nearest.starts_with("known") ? "choose one of them" : nearest);
 }
 
 }  // namespace

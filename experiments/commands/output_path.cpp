@@ -33,8 +33,10 @@ void refuse_input_as_output(const fs::path& output, const std::vector<std::strin
   for (const std::string& input : inputs) {
     for (const std::string& name : {input, input + ".part"}) {
       if (!fs::equivalent(output, name, ignored)) continue;
-      throw StudyError(output.string() + ": is the same file as " + name +
-                       " (the input would be overwritten, even with --force): choose another name");
+      throw StudyError(
+          "{}: is the same file as {} (the input would be overwritten, even with --force): choose "
+          "another name",
+          output, name);
     }
   }
 }
@@ -46,8 +48,8 @@ void require_place_for_result(const fs::path& output) {
   for (const fs::path& path : {output, fs::path(output.string() + ".part")}) {
     const std::string obstacle = obstacle_at(path);
     if (obstacle.empty()) continue;
-    throw StudyError(path.string() + ": " + obstacle +
-                     " (nothing but a result is ever replaced): choose another name");
+    throw StudyError("{}: {} (nothing but a result is ever replaced): choose another name", path,
+                     obstacle);
   }
 }
 

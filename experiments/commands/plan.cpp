@@ -2,6 +2,7 @@
 #include "analysis/study/text_table.hpp"
 #include "analysis/verdict/nees_plan.hpp"
 #include "engine/core/judgement.hpp"
+#include "engine/formatted.hpp"
 #include "engine/text/number_text.hpp"
 #include "engine/text/wrapped_text.hpp"
 #include "experiments/commands/commands.hpp"
@@ -34,22 +35,21 @@ std::string meaning_of(const NeesTest& test, const Question& question) {
                               ? readable(off) + " times larger than the filter estimates"
                               : readable(1.0 / off) + " times smaller than the filter estimates";
   const std::string power = percent(question.power), margin = readable(question.within);
-  return "NEES is the squared error in units of its covariance. Its mean is " + readable(d) +
-         " for a consistent filter and " + readable(d * question.ratio) +
-         " for the filter in question, whose errors are " + way +
-         ".\ndetect: the filter is called " +
-         (question.ratio > 1.0 ? "optimistic" : "conservative") + " in at least " + power +
-         " of studies, unless the ratio is within the margin.\nshow: a consistent filter is called "
-         "consistent within " +
-         margin + " in at least " + power +
-         " of studies, in every component and every eighth of the drive, without bias and "
-         "correlation.\n";
+  return formatted(
+      "NEES is the squared error in units of its covariance. Its mean is {} for a consistent "
+      "filter and {} for the filter in question, whose errors are {}.\ndetect: the filter is "
+      "called {} in at least {} of studies, unless the ratio is within the margin.\nshow: a "
+      "consistent filter is called consistent within {} in at least {} of studies, in every "
+      "component and every eighth of the drive, without bias and correlation.\n",
+      readable(d), readable(d * question.ratio), way,
+      question.ratio > 1.0 ? "optimistic" : "conservative", power, margin, power);
 }
 
 std::string about_scans(std::uint64_t scans) {
-  return "Neighbouring scans are correlated, so that a run of " + std::to_string(scans) +
-         " scans counts for fewer independent ones. The numbers of runs are between the two "
-         "rows.\n";
+  return formatted(
+      "Neighbouring scans are correlated, so that a run of {} scans counts for fewer independent "
+      "ones. The numbers of runs are between the two rows.\n",
+      scans);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "engine/records/posix_file.hpp"
 #include "engine/runs/monte_carlo.hpp"
 #include "engine/runs/recompute.hpp"
@@ -90,7 +91,7 @@ int replay_command(const Arguments& arguments) {
   require_place_for_result(output);
   const Study study = study_in(file, arguments);
   const CellSpec& chosen = item_called(label, study.cells, &CellSpec::label,
-                                       "--cell " + label + ": no cell of this study");
+                                       formatted("--cell {}: no cell of this study", label));
   const auto cell = static_cast<std::size_t>(&chosen - study.cells.data());
   const Study whole = recording_everything(study, cell, run);
   const ExternalPrograms programs = programs_of(whole, arguments);

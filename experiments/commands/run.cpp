@@ -50,8 +50,10 @@ std::filesystem::path output_of(const Study& study, const Arguments& arguments) 
     throw StudyError("run: -o OUT.h5 is missing (each shard needs a name): add e.g. -o shard0.h5");
   const std::string& name = study.settings.text("study", "name");
   if (name.find('/') != std::string::npos)
-    throw StudyError("run: -o OUT.h5 is missing (the study's name '" + name +
-                     "' names no file here): add e.g. -o results.h5");
+    throw StudyError(
+        "run: -o OUT.h5 is missing (the study's name '{}' names no file here): add e.g. -o "
+        "results.h5",
+        name);
   return name + ".h5";
 }
 
@@ -66,9 +68,9 @@ std::optional<std::filesystem::path> report_folder(const RunOptions& options,
 
 RunOptions options_of(const Study& study, const Arguments& arguments) {
   if (arguments.has("force") && (arguments.has("resume") || arguments.has("attempt"))) {
-    throw StudyError("--force and " +
-                     std::string(arguments.has("resume") ? "--resume" : "--attempt") +
-                     ": one contradicts the other (go on, or begin anew?): remove one of them");
+    throw StudyError(
+        "--force and {}: one contradicts the other (go on, or begin anew?): remove one of them",
+        arguments.has("resume") ? "--resume" : "--attempt");
   }
   RunOptions options;
   options.output = output_of(study, arguments);

@@ -2,6 +2,7 @@
 #include "experiments/commands/shard_folder.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "engine/records/fingerprint.hpp"
 #include "engine/records/open_result.hpp"
 #include "engine/records/posix_file.hpp"
@@ -40,8 +41,7 @@ ShardPlan read_plan(const fs::path& folder) {
     return {json.at("sha256"), json.at("runs"),    json.at("cells"),
             json.at("shards"), json.at("program"), json.at("settings")};
   } catch (const nlohmann::json::exception& error) {
-    throw StudyError(path.string() + ": cannot be read (" + error.what() +
-                     "): work in another folder");
+    throw StudyError("{}: cannot be read ({}): work in another folder", path, error.what());
   }
 }
 
@@ -61,16 +61,14 @@ void write_whole(const fs::path& path, const std::string& text) {
 
 void require_same(const fs::path& folder, const ShardPlan& before, const ShardPlan& plan) {
   if (before.study_sha256 != plan.study_sha256) {
-    throw StudyError(folder.string() + ": holds another study (SHA-256 " +
-                     before.study_sha256.substr(0, 12) + ", not " +
-                     plan.study_sha256.substr(0, 12) +
-                     ": a setting, a world or --set differs): give the study as it was, or another "
-                     "folder");
+    throw StudyError(
+        "{}: holds another study (SHA-256 {}, not {}: a setting, a world or --set differs): give "
+        "the study as it was, or another folder",
+        folder, before.study_sha256.substr(0, 12), plan.study_sha256.substr(0, 12));
   }
   if (before.shards == plan.shards) return;
-  throw StudyError("--shards " + std::to_string(plan.shards) + ": " + folder.string() +
-                   " is cut into " + std::to_string(before.shards) + ": give --shards " +
-                   std::to_string(before.shards) + ", or another folder");
+  throw StudyError("--shards {}: {} is cut into {}: give --shards {}, or another folder",
+                   plan.shards, folder, before.shards, before.shards);
 }
 
 /// Throws StudyError if a folder without a plan holds another study.ini than the one of the plan.
@@ -86,13 +84,14 @@ void make_folders(const fs::path& folder) {
   std::error_code failed;
   fs::create_directories(folder / "shards", failed);
   if (!failed) return;
-  throw StudyError(folder.string() + ": cannot be made (" + failed.message() +
-                   "): choose a folder where you may write");
+  throw StudyError("{}: cannot be made ({}): choose a folder where you may write", folder,
+                   failed.message());
 }
 
 std::string shard_name(std::uint64_t index) {
   const std::string number = std::to_string(index);
-  return "shard_" + std::string(4 - std::min<std::size_t>(4, number.size()), '0') + number + ".h5";
+  return formatted("shard_{}{}.h5", std::string(4 - std::min<std::size_t>(4, number.size()), '0'),
+                   number);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/study/text_table.hpp"
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "engine/records/result_layout.hpp"
 #include "engine/records/sum_groups.hpp"
 #include "experiments/commands/commands.hpp"
@@ -87,7 +88,7 @@ std::string defect_of(const ResultFile& file) {
       if (!is_stored(status[i])) continue;
       if (!truth_is_whole(bytes, slabs, i, buffer) ||
           !run_is_whole(bytes, slabs.cells[c], i, buffer))
-        return "run " + std::to_string(file.runs()[i]) + " does not fit its fingerprint";
+        return formatted("run {} does not fit its fingerprint", file.runs()[i]);
     }
   }
   return {};
@@ -98,7 +99,7 @@ struct StatusFields {
   std::string sha256;
   RunCounts runs;
   double seconds = 0.0;
-  std::string flaw;  ///< what is damaged; empty if nothing is
+  std::string flaw;  ///< the damage; empty if there is none
 };
 
 std::string text_of(const StatusFields& fields) {
@@ -146,7 +147,7 @@ std::string status_line(const std::string& name, Depth depth) {
     line = joined(std::vector<std::string>{"damaged", "", "0", "0", "0", "0", error.what()}, "\t");
   }
   std::ranges::replace(line, '\n', ' ');
-  return name + "\t" + line + "\n";
+  return formatted("{}\t{}\n", name, line);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include "analysis/render/tables/terminal.hpp"
 #include "analysis/study/study_analysis.hpp"
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "engine/records/fingerprint.hpp"
 #include "engine/records/posix_file.hpp"
 #include "engine/records/provenance.hpp"
@@ -49,7 +50,8 @@ bool print_verdict(const std::filesystem::path& result, const Parallel& parallel
 
 void print_where_to_look(const std::string& name, const std::string& page) {
   const std::string file = shell_quoted(name);
-  std::cout << "Page: " << (page.empty() ? "montecarta report " + file + " -o DIR" : page) << "\n"
+  std::cout << "Page: " << (page.empty() ? formatted("montecarta report {} -o DIR", file) : page)
+            << "\n"
             << "More: montecarta analyze " << file << " --all (or --table NAME)\n";
 }
 

@@ -3,6 +3,7 @@
 
 #include "analysis/study/stored_sums.hpp"
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "engine/records/check_file.hpp"
 #include "engine/records/open_result.hpp"
 #include "engine/records/posix_file.hpp"
@@ -32,7 +33,7 @@ StudyPlan group_of(const StudyPlan& plan, std::uint64_t first_run) {
 }
 
 fs::path file_in(const fs::path& folder, const char* kind, std::uint64_t first_run) {
-  return folder / (std::string(kind) + "_" + std::to_string(first_run) + ".h5");
+  return folder / formatted("{}_{}.h5", kind, first_run);
 }
 
 /// The description of a finished group. Throws StudyError if a byte of it is damaged.

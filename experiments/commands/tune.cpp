@@ -6,6 +6,7 @@
 #include "analysis/study/tuning.hpp"
 #include "analysis/verdict/sentence.hpp"
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "engine/records/posix_file.hpp"
 #include "engine/records/result_file.hpp"
 #include "engine/runs/monte_carlo.hpp"
@@ -45,13 +46,14 @@ const CellSpec& cell_to_tune(const Study& study, const Arguments& arguments) {
       !label && study.cells.size() == 1
           ? study.cells.front()
           : item_called(label.value_or(""), study.cells, &CellSpec::label,
-                        label ? "--cell " + *label + ": no cell of this study"
+                        label ? formatted("--cell {}: no cell of this study", *label)
                               : std::string("tune: --cell CELL is needed (one filter is tuned)"));
   if (!starts_program(*cell.filter)) return cell;
-  throw StudyError(cell.place + ": cell " + cell.label +
-                   " is a program (it would be started hundreds of times, and need not use the "
-                   "noise of [belief]): tune a filter of this program, or vary the noise of yours "
-                   "with motion_noise=0.5,1,2 in the study");
+  throw StudyError(
+      "{}: cell {} is a program (it would be started hundreds of times, and need not use the noise "
+      "of [belief]): tune a filter of this program, or vary the noise of yours with "
+      "motion_noise=0.5,1,2 in the study",
+      cell.place, cell.label);
 }
 
 /// Seed of the confirming runs: --seed, or the one after that of the study.
@@ -60,9 +62,10 @@ std::uint64_t seed_to_confirm(const Study& study, const Arguments& arguments) {
   const std::uint64_t seed =
       arguments.count("seed", 0, UINT64_MAX).value_or(trained == UINT64_MAX ? 0 : trained + 1);
   if (seed != trained) return seed;
-  throw StudyError("--seed " + std::to_string(seed) +
-                   ": the seed of the study (its runs choose the factors, and cannot confirm "
-                   "them): give another one");
+  throw StudyError(
+      "--seed {}: the seed of the study (its runs choose the factors, and cannot confirm them): "
+      "give another one",
+      seed);
 }
 
 /// A folder of its own, which is removed in the end.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "engine/records/fingerprint.hpp"
 #include "engine/runs/recompute.hpp"
 #include "engine/text/wrapped_text.hpp"
@@ -96,9 +97,9 @@ bool verify_sums(const ResultFile& file, const StudyPlan& plan, std::uint64_t se
                           file.sums(stored) == computed[c].sums;
     are_equal = are_equal && is_equal;
   }
-  std::cout << wrapped("The sums over runs " + std::to_string(chosen.first_run) + " to " +
-                           std::to_string(chosen.first_run + chosen.runs - 1) +
-                           (are_equal ? " are reproduced byte for byte" : " differ"),
+  std::cout << wrapped(formatted("The sums over runs {} to {} {}", chosen.first_run,
+                                 chosen.first_run + chosen.runs - 1,
+                                 are_equal ? "are reproduced byte for byte" : "differ"),
                        output_width());
   return are_equal;
 }
@@ -125,11 +126,10 @@ int verify_command(const Arguments& arguments) {
     if (difference) std::cout << wrapped(*difference, output_width(), 2);
   }
   const std::size_t damaged = print_damaged(file, chosen);
-  std::cout << wrapped(std::to_string(equal) + " of " + std::to_string(chosen.size()) +
-                           " runs are reproduced byte for byte, out of " +
-                           std::to_string(stored.size()) + " stored (sample " +
-                           std::to_string(seed) + ")",
-                       output_width());
+  std::cout << wrapped(
+      formatted("{} of {} runs are reproduced byte for byte, out of {} stored (sample {})", equal,
+                chosen.size(), stored.size(), seed),
+      output_width());
   const bool sums_equal = verify_sums(file, plan, seed, parallel_of(arguments));
   return equal == std::ssize(chosen) && damaged == 0 && sums_equal ? kDone : kDifferent;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "engine/records/merge.hpp"
 #include "engine/records/posix_file.hpp"
 #include "engine/runs/monte_carlo.hpp"
@@ -26,7 +27,7 @@ namespace fs = std::filesystem;
 /// change after a few seconds, and at most after a minute.
 constexpr double kPatience = 60.0;
 
-/// What one worker does, and in which folder.
+/// One worker: its command line, its folder and its study.
 struct ShardWorker {
   const Arguments& arguments;
   ShardFolder folder;
@@ -46,15 +47,14 @@ void require_shards(const Study& study, std::uint64_t shards) {
   const std::uint64_t unit = in_groups ? kRunsOfAGroup : 1;
   const std::uint64_t most = (runs + unit - 1) / unit;
   if (shards <= most) return;
-  throw StudyError("--shards " + std::to_string(shards) + ": not usable (a shard holds at least " +
-                   (in_groups ? "one group of " + std::to_string(unit) + " runs" : "one run") +
-                   " of the study's " + std::to_string(runs) + "): choose 1 to " +
-                   std::to_string(most));
+  throw StudyError(
+      "--shards {}: not usable (a shard holds at least {} of the study's {}): choose 1 to {}",
+      shards, in_groups ? formatted("one group of {} runs", unit) : "one run", runs, most);
 }
 
 StudyPlan plan_of_shard(const Study& study, std::uint64_t index, std::uint64_t shards,
                         ExternalPrograms programs) {
-  const std::string part = std::to_string(index) + "/" + std::to_string(shards);
+  const std::string part = formatted("{}/{}", index, shards);
   return make_plan(study, shard_of(study.settings, part), programs);
 }
 
@@ -103,18 +103,17 @@ int compute(const ShardWorker& worker, WorkClaim& claim) {
   const RunOptions options = options_of(worker, claim.file());
   RunOutcome outcome =
       plan.columns.sums ? run_summed_study(plan, options) : run_study(plan, options);
-  const std::string name =
-      "shard " + std::to_string(index) + " of " + std::to_string(worker.folder.plan().shards);
+  const std::string name = formatted("shard {} of {}", index, worker.folder.plan().shards);
   if (outcome.counts.missing > 0) {
     worker.say(name + ": stopped at a checkpoint, from which any worker continues");
     claim.leave();
     return exit_code(outcome, runs_under_scheduler());
   }
-  worker.say(name + ": " + std::to_string(outcome.runs_here) + " runs in " +
-             duration_text(outcome.seconds) +
-             (outcome.counts.failed == 0 ? ""
-                                         : ", " + std::to_string(outcome.counts.failed) +
-                                               " failed, which are results too"));
+  worker.say(
+      formatted("{}: {} runs in {}{}", name, outcome.runs_here, duration_text(outcome.seconds),
+                outcome.counts.failed == 0
+                    ? ""
+                    : formatted(", {} failed, which are results too", outcome.counts.failed)));
   if (outcome.signal == StopReason::complete) return kDone;
   worker.say("stopped by a signal; any worker continues");
   outcome.stopped = outcome.signal;
@@ -125,16 +124,17 @@ void merge_shards(const ShardWorker& worker) {
   const auto summary = merge_attempt(worker.folder.result(), worker.folder.shards());
   if (!summary) return worker.say("another worker has merged the shards");
   for (const std::string& note : summary->notes) worker.say(note);
-  worker.say(std::to_string(worker.folder.plan().shards) + " shards merged to " +
-             worker.folder.result().string());
+  worker.say(
+      formatted("{} shards merged to {}", worker.folder.plan().shards, worker.folder.result()));
 }
 
 /// Claims one of the missing files, or finds why there is none to claim.
 ClaimSearch claim_one(const ShardWorker& worker, const std::vector<fs::path>& missing) {
   const double patience = worker.patience();
   if (auto claim = claim_free(missing, patience)) return {std::move(claim), {}};
-  worker.say("no shard is free; looking for at most " + duration_text(patience) +
-             " whether the workers of the others are alive");
+  worker.say(formatted(
+      "no shard is free; looking for at most {} whether the workers of the others are alive",
+      duration_text(patience)));
   return watch_others(missing, patience);
 }
 
@@ -173,11 +173,11 @@ int make_claimed(const ShardWorker& worker, std::unique_ptr<WorkClaim> claim) {
 [[noreturn]] void refuse_to_begin(const std::vector<fs::path>& given_up) {
   std::string files;
   for (const fs::path& file : given_up)
-    files += "\n  " + file.string() + ".claim.*: " + std::string(trimmed(claims_on(file).text));
-  throw RunError("work: " + std::to_string(kMostLosses) +
-                 " workers were lost or failed over one file (it would end all workers one by "
-                 "one): remove the cause and these files, then start work again:" +
-                 files);
+    files += formatted("\n  {}.claim.*: {}", file, trimmed(claims_on(file).text));
+  throw RunError(
+      "work: {} workers were lost or failed over one file (it would end all workers one by one): "
+      "remove the cause and these files, then start work again:{}",
+      kMostLosses, files);
 }
 
 /// Whether all shards were finished since `before` was found missing, or the result is there.
@@ -204,15 +204,16 @@ int work_command(const Arguments& arguments) {
       if (code != kDone) return code;
     } else if (!is_further(worker.folder, missing)) {
       if (!found.given_up.empty()) refuse_to_begin(found.given_up);
-      worker.say("nothing to do: other workers are at " + std::to_string(missing.size()) +
-                 " files; the last one merges. If they are ended, the same command continues");
+      worker.say(
+          formatted("nothing to do: other workers are at {} files; the last one merges. If they "
+                    "are ended, the same command continues",
+                    missing.size()));
       return kDone;
     }
   }
   if (has_merged && !arguments.has("quiet") && print_verdict(result, parallel_of(arguments)))
     print_where_to_look(result.string(), "");
-  worker.say("complete: all " + std::to_string(worker.folder.plan().runs) + " runs are in " +
-             result.string());
+  worker.say(formatted("complete: all {} runs are in {}", worker.folder.plan().runs, result));
   return kDone;
 }
 

@@ -2,6 +2,7 @@
 #include "experiments/commands/work_claim.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "engine/records/open_result.hpp"
 #include "engine/records/posix_file.hpp"
 #include "engine/runs/progress.hpp"
@@ -51,8 +52,8 @@ bool create(const fs::path& path) {
   std::FILE* file = std::fopen(path.c_str(), "wxe");
   if (file == nullptr && errno == EEXIST) return false;
   if (file == nullptr)
-    throw StudyError(path.string() + ": cannot be made (" + std::strerror(errno) +
-                     "): choose a folder where you may write");
+    throw StudyError("{}: cannot be made ({}): choose a folder where you may write", path,
+                     std::strerror(errno));
   std::fclose(file);
   return true;
 }
@@ -95,7 +96,7 @@ void WorkClaim::keep_alive(double period) {
   const std::string me = name_of_process();
   std::unique_lock lock(mutex_);
   for (std::uint64_t sign = 1; !over_; ++sign) {
-    replace_text(claim_, "at work: " + me + " " + std::to_string(sign) + "\n");
+    replace_text(claim_, formatted("at work: {} {}\n", me, sign));
     wake_.wait_for(lock, std::chrono::duration<double>(period));
   }
 }
@@ -111,13 +112,12 @@ void WorkClaim::stop() {
 
 void WorkClaim::leave() {
   stop();
-  replace_text(claim_, std::string(kLeftText) + " by " + name_of_process() + "\n");
+  replace_text(claim_, formatted("{} by {}\n", kLeftText, name_of_process()));
 }
 
 void WorkClaim::fail(const std::string& reason) {
   stop();
-  replace_text(claim_,
-               std::string(kFailedText) + " on " + name_of_process() + ": " + reason + "\n");
+  replace_text(claim_, formatted("{} on {}: {}\n", kFailedText, name_of_process(), reason));
 }
 
 namespace {
@@ -125,7 +125,7 @@ namespace {
 /// A file that another worker makes, as this one has seen it.
 struct Watched {
   fs::path file;
-  ClaimState first;       ///< what the claims said when the watch began
+  ClaimState first;       ///< its claims when the watch began
   bool is_alive = false;  ///< whether the worker has shown a sign of life since
 };
 

@@ -71,7 +71,7 @@ class WorkClaim {
 std::unique_ptr<WorkClaim> claim_free(const std::vector<std::filesystem::path>& files,
                                       double patience);
 
-/// What a worker finds that watches others.
+/// The result of watching other workers.
 struct ClaimSearch {
   std::unique_ptr<WorkClaim> claim;  ///< claim on a file whose worker is lost; nullptr: on none
   std::vector<std::filesystem::path> given_up;  ///< files that nobody makes and nobody may begin

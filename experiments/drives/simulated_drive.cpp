@@ -106,26 +106,29 @@ double time_limit(const Pose& pose, const Eigen::Vector2d& waypoint, const Scena
 
 [[noreturn]] void throw_unreachable(const World& world, std::size_t waypoint,
                                     const Scenario& scenario) {
-  const double step = step_length(scenario);
-  const std::string why_and_remedy =
-      step > scenario.waypoint_radius
-          ? " m (the vehicle steps over it, " + to_text(step) +
-                " m at a time): lower scenario.speed, or enlarge scenario.control_rate or "
-                "scenario.waypoint_radius"
-          : " m (the vehicle circles around it): enlarge scenario.waypoint_radius or scenario." +
-                std::string(turn_limit_key(scenario.vehicle)) + ", or move the way-point";
   const std::string place =
       world.waypoint_places.empty() ? "world " + world.name : world.waypoint_places.at(waypoint);
-  throw StudyError(place + ": way-point " + std::to_string(waypoint + 1) +
-                   " is not reached within " + to_text(scenario.waypoint_radius) + why_and_remedy);
+  const std::string radius = to_text(scenario.waypoint_radius);
+  const double step = step_length(scenario);
+  if (step > scenario.waypoint_radius) {
+    throw StudyError(
+        "{}: way-point {} is not reached within {} m (the vehicle steps over it, {} m at a time): "
+        "lower scenario.speed, or enlarge scenario.control_rate or scenario.waypoint_radius",
+        place, waypoint + 1, radius, to_text(step));
+  }
+  throw StudyError(
+      "{}: way-point {} is not reached within {} m (the vehicle circles around it): enlarge "
+      "scenario.waypoint_radius or scenario.{}, or move the way-point",
+      place, waypoint + 1, radius, turn_limit_key(scenario.vehicle));
 }
 
 [[noreturn]] void throw_too_long(const World& world, const Scenario& scenario) {
   const std::string remedy =
       scenario.pilot == Pilot::constant ? "a shorter scenario.drive_time" : "fewer scenario.loops";
-  throw StudyError("world " + world.name + ": a run has more than " + std::to_string(kMostSteps) +
-                   " steps (no result file would hold it): use " + remedy +
-                   " or a lower scenario.control_rate");
+  throw StudyError(
+      "world {}: a run has more than {} steps (no result file would hold it): use {} or a lower "
+      "scenario.control_rate",
+      world.name, kMostSteps, remedy);
 }
 
 }  // namespace

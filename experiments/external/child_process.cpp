@@ -2,6 +2,7 @@
 #include "experiments/external/child_process.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>
@@ -111,8 +112,9 @@ Descriptor beyond_standard(int number) {
 Pipe make_pipe() {
   std::array<int, 2> ends{};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0)
-    throw RunError(std::string("no pipe to a program (") + std::strerror(errno) +
-                   "): allow more open files (ulimit -n), or use fewer threads");
+    throw RunError(
+        "no pipe to a program ({}): allow more open files (ulimit -n), or use fewer threads",
+        std::strerror(errno));
   Descriptor read = beyond_standard(ends[0]), write = beyond_standard(ends[1]);
   return {std::move(read), std::move(write)};
 }
@@ -203,9 +205,10 @@ fs::path find_program(const std::string& program) {
       if (may_be_run(file)) return file;
     }
   }
-  throw StudyError("program '" + program +
-                   "' (there is no such file that may be run, here or in $PATH): correct the "
-                   "command, install the program, or chmod +x it");
+  throw StudyError(
+      "program '{}' (there is no such file that may be run, here or in $PATH): correct the "
+      "command, install the program, or chmod +x it",
+      program);
 }
 
 ChildProcess::ChildProcess(std::span<const std::string> words) {
@@ -231,9 +234,10 @@ void ChildProcess::start(std::span<const std::string> words, int input, int outp
       ::posix_spawnp(&process_, arguments.front().c_str(), orders.actions(), orders.attributes(),
                      pointers_to(arguments).data(), pointers_to(variables).data());
   if (failure == 0) return OrphanGuard::instance().guard(process_);
-  throw RunError("program '" + words.front() + "' cannot be started (" + std::strerror(failure) +
-                 "): a script needs a first line like #!/usr/bin/python3; else free memory, or use "
-                 "fewer threads");
+  throw RunError(
+      "program '{}' cannot be started ({}): a script needs a first line like #!/usr/bin/python3; "
+      "else free memory, or use fewer threads",
+      words.front(), std::strerror(failure));
 }
 
 Descriptor& Descriptor::operator=(Descriptor&& other) noexcept {
@@ -345,8 +349,8 @@ std::string ChildProcess::how_it_ended() {
   ::waitid(P_PID, static_cast<id_t>(process_), &end, WEXITED | WNOWAIT);
   if (end.si_code == CLD_EXITED)
     return "program ended with exit code " + std::to_string(end.si_status);
-  return "program was killed by signal " + std::to_string(end.si_status) + " (" +
-         ::sigdescr_np(end.si_status) + ")";
+  return formatted("program was killed by signal {} ({})", end.si_status,
+                   ::sigdescr_np(end.si_status));
 }
 
 bool ChildProcess::ends_within(int milliseconds) const {

@@ -94,9 +94,10 @@ void ExternalFilter::send_start(const RunStart& start) const {
   } catch (const ProgramError& error) {
     if (stop_ != nullptr && stop_->is_set()) throw;
     if (command_.starts->any_was_answered || ++command_.starts->failed < kHopelessStarts) throw;
-    throw RunError("program '" + command_.words.front() + "': none of its first " +
-                   std::to_string(kHopelessStarts) + " starts was answered (" + error.what() +
-                   "): mend the program; montecarta check tries it");
+    throw RunError(
+        "program '{}': none of its first {} starts was answered ({}): mend the program; montecarta "
+        "check tries it",
+        command_.words.front(), kHopelessStarts, error.what());
   }
 }
 

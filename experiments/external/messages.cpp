@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/external/messages.hpp"
 
+#include "engine/formatted.hpp"
 #include "experiments/external/child_process.hpp"
 #include "experiments/text/words.hpp"
 #include "filters/models/vehicle_settings.hpp"
@@ -148,17 +149,18 @@ Answer object_in(std::string_view line, std::uint64_t id,
   if (!answer.is_object()) refuse_answer("answer is no JSON object: " + excerpt(line));
   const auto number = answer.find("id");
   if (number == answer.end() || !number->is_number_unsigned() || *number != id)
-    refuse_answer("answer has not the message's id " + std::to_string(id) + ": " + excerpt(line));
+    refuse_answer(formatted("answer has not the message's id {}: {}", id, excerpt(line)));
   for (const auto& [name, value] : answer.items()) {
     if (name != "id" && std::ranges::find(members, name) == members.end())
-      refuse_answer("answer has an unknown member '" + excerpt(name) + "'");
+      refuse_answer(formatted("answer has an unknown member '{}'", excerpt(name)));
   }
   return answer;
 }
 
 double finite_number(const Answer& value, const std::string& what) {
   if (value.is_null()) refuse_answer(what + " is not a number");
-  if (!value.is_number()) refuse_answer(what + " is not a number: " + excerpt(value.dump()));
+  if (!value.is_number())
+    refuse_answer(formatted("{} is not a number: {}", what, excerpt(value.dump())));
   const double number = value.get<double>();
   if (!std::isfinite(number)) refuse_answer(what + " is not finite");
   return number;
@@ -172,7 +174,7 @@ const Answer& member(const Answer& answer, const char* name) {
 
 void expect_array(const Answer& value, std::size_t size, const std::string& what) {
   if (value.is_array() && value.size() == size) return;
-  refuse_answer(what + " is no array of " + std::to_string(size));
+  refuse_answer(formatted("{} is no array of {}", what, size));
 }
 
 /// Throws ProgramError unless C is a covariance: no variance is negative, and no eigenvalue of the
@@ -228,7 +230,7 @@ std::uint32_t optional_count(const Answer& answer, const char* name) {
   const bool fits = found->is_number_unsigned() &&
                     found->get<std::uint64_t>() <= std::numeric_limits<std::uint32_t>::max();
   if (!fits)
-    refuse_answer(std::string(name) + " is no whole number from 0: " + excerpt(found->dump()));
+    refuse_answer(formatted("{} is no whole number from 0: {}", name, excerpt(found->dump())));
   return found->get<std::uint32_t>();
 }
 
@@ -276,11 +278,10 @@ void read_map(std::string_view line, std::uint64_t id, Association association,
     const auto [number, landmark] = landmark_in(row);
     if (number >= landmarks.size()) {
       if (association == Association::nearest) continue;
-      refuse_answer("the map has landmark " + std::to_string(number) + ", the world has " +
-                    std::to_string(landmarks.size()));
+      refuse_answer(
+          formatted("the map has landmark {}, the world has {}", number, landmarks.size()));
     }
-    if (landmarks[number])
-      refuse_answer("the map has landmark " + std::to_string(number) + " twice");
+    if (landmarks[number]) refuse_answer(formatted("the map has landmark {} twice", number));
     landmarks[number] = landmark;
   }
 }

@@ -2,6 +2,7 @@
 #include "experiments/files/files.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>
@@ -61,14 +62,14 @@ std::string whole_file(const std::filesystem::path& path) {
                      ": cannot be opened (is it there, a file, and readable?): check the path");
   }
   if (size > kLargestFile) {
-    throw StudyError(path.string() + ": " + std::to_string(size) +
-                     " bytes (at most 512 MiB are read): split it or thin it out");
+    throw StudyError("{}: {} bytes (at most 512 MiB are read): split it or thin it out", path,
+                     size);
   }
   std::string bytes(static_cast<std::size_t>(size), '\0');
   file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   if (file.gcount() != static_cast<std::streamsize>(bytes.size())) {
-    throw StudyError(path.string() + ": ends before its last byte (did it change while it was " +
-                     "read?): read it again");
+    throw StudyError(
+        "{}: ends before its last byte (did it change while it was read?): read it again", path);
   }
   return bytes;
 }
@@ -85,8 +86,8 @@ std::string text_file(const std::filesystem::path& path) {
   if (nul == text.npos) return text;
   const auto line =
       1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(nul), '\n');
-  throw StudyError(path.string() + ":" + std::to_string(line) +
-                   ": a NUL byte (this is no text, or it is damaged): save it as UTF-8");
+  throw StudyError("{}:{}: a NUL byte (this is no text, or it is damaged): save it as UTF-8", path,
+                   line);
 }
 
 CsvRows::CsvRows(const std::filesystem::path& path, std::span<const std::string> headers)
@@ -94,9 +95,9 @@ CsvRows::CsvRows(const std::filesystem::path& path, std::span<const std::string>
   read_header(headers);
 }
 
-std::string CsvRows::place() const { return path_ + ":" + std::to_string(line_); }
+std::string CsvRows::place() const { return formatted("{}:{}", path_, line_); }
 
-void CsvRows::refuse(const std::string& fault) const { throw StudyError(place() + ": " + fault); }
+void CsvRows::refuse(const std::string& fault) const { throw StudyError("{}: {}", place(), fault); }
 
 void CsvRows::require_some() const {
   if (has_rows_) return;
@@ -128,8 +129,8 @@ std::optional<std::string_view> CsvRows::take_row() {
 
 void CsvRows::refuse_other_separators(std::string_view row) const {
   if (row.find(';') != row.npos) {
-    refuse(std::string("semicolons separate the columns (commas are read): ") + kDecimalPoints +
-           ", e.g. 0.5,2.25");
+    refuse(formatted("semicolons separate the columns (commas are read): {}, e.g. 0.5,2.25",
+                     kDecimalPoints));
   }
   if (row.find(',') != row.npos || !has_letter(row)) return;
   if (row.find_first_of("\t ") == row.npos) return;
@@ -140,16 +141,17 @@ void CsvRows::refuse_other_separators(std::string_view row) const {
 void CsvRows::refuse_number_of_fields(std::string_view row, std::size_t fields) const {
   refuse_other_separators(row);
   const std::string remedy = "write one field for each column";
-  const std::string fault =
-      std::to_string(fields) + " fields (a row is " + joined(columns_, ",") + "): ";
+  const std::string fault = formatted("{} fields (a row is {}): ", fields, joined(columns_, ","));
   if (fields < columns_.size()) refuse(fault + remedy);
   if (row.find('"') != row.npos) {
-    refuse("numbers in quotes with decimal commas (" + std::to_string(fields) + " fields for " +
-           std::to_string(columns_.size()) + " columns): remove the quotes, and " + kDecimalPoints);
+    refuse(
+        formatted("numbers in quotes with decimal commas ({} fields for {} columns): remove the "
+                  "quotes, and {}",
+                  fields, columns_.size(), kDecimalPoints));
   }
   if (row.find('.') == row.npos) {
-    refuse("decimal commas (" + std::to_string(fields) + " fields for " +
-           std::to_string(columns_.size()) + " columns, and no decimal point): " + kDecimalPoints);
+    refuse(formatted("decimal commas ({} fields for {} columns, and no decimal point): {}", fields,
+                     columns_.size(), kDecimalPoints));
   }
   refuse(fault + remedy);
 }
@@ -158,7 +160,7 @@ void CsvRows::read_header(std::span<const std::string> headers) {
   const std::string remedy = headers.empty() ? "their names" : joined(headers, " or ");
   const std::optional<std::string_view> row = take_row();
   if (!row) {
-    throw StudyError(path_ + ": empty (the first row names the columns): begin with " + remedy);
+    throw StudyError("{}: empty (the first row names the columns): begin with {}", path_, remedy);
   }
   refuse_other_separators(*row);
   if (row->find('"') != row->npos) {
@@ -170,8 +172,8 @@ void CsvRows::read_header(std::span<const std::string> headers) {
   if (headers.empty()) return;
   const auto known = std::ranges::find(headers, joined(columns_, ","));
   if (known == headers.end()) {
-    refuse("'" + excerpt(*row) +
-           "' is not the header (the first row names the columns): begin with " + remedy);
+    refuse(formatted("'{}' is not the header (the first row names the columns): begin with {}",
+                     excerpt(*row), remedy));
   }
   header_ = static_cast<std::size_t>(known - headers.begin());
 }
@@ -188,8 +190,8 @@ bool CsvRows::next() {
 double CsvRows::number(std::size_t i, const char* noun) const {
   if (const std::optional<double> value = to_number(field(i))) return *value;
   const bool is_quoted = field(i).starts_with('"') || field(i).starts_with('\'');
-  refuse("'" + excerpt(field(i)) + "' is no " + noun +
-         " (a finite number is needed): " + (is_quoted ? "remove the quotes" : "write e.g. 12.5"));
+  refuse(formatted("'{}' is no {} (a finite number is needed): {}", excerpt(field(i)), noun,
+                   is_quoted ? "remove the quotes" : "write e.g. 12.5"));
 }
 
 void CsvRows::refuse_equal_times(const std::string& other_remedy) const {
@@ -207,10 +209,10 @@ void CsvRows::refuse_equal_times(const std::string& other_remedy) const {
   if (is_whole) {
     why += ", and it is printed in whole seconds";
   } else if (digits >= kLeastDigits && digits <= kFewDigits) {
-    why += ", and " + std::to_string(digits) + " digits are printed";
+    why += formatted(", and {} digits are printed", digits);
   }
-  refuse("equal times " + excerpt(text) + " s (" + why + "): print times with 15 digits, or " +
-         other_remedy);
+  refuse(formatted("equal times {} s ({}): print times with 15 digits, or {}", excerpt(text), why,
+                   other_remedy));
 }
 
 double CsvRows::time(Order order, const std::string& other_remedy) {
@@ -219,8 +221,8 @@ double CsvRows::time(Order order, const std::string& other_remedy) {
   if (last_time_ > before || (last_time_ == before && order == Order::not_earlier))
     return last_time_;
   if (last_time_ == before) refuse_equal_times("leave one of the rows out" + other_remedy);
-  refuse("time " + to_text(last_time_) + " s comes after " + to_text(before) +
-         " s (rows go forward in time): sort them" + other_remedy);
+  refuse(formatted("time {} s comes after {} s (rows go forward in time): sort them{}",
+                   to_text(last_time_), to_text(before), other_remedy));
 }
 
 }  // namespace montecarta::experiments

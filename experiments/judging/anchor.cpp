@@ -97,8 +97,9 @@ std::optional<std::size_t> move_to_anchor(Anchor anchor, const StateRows& estima
                                           std::vector<std::optional<TrueState>>& truths) {
   const StateShape& shape = estimates.shape;
   if (shape.kind == StateKind::vector) {
-    throw StudyError(path.string() + ": --anchor " + name_of(anchor) +
-                     " is for poses (this state is a vector, which has no frame): leave it out");
+    throw StudyError(
+        "{}: --anchor {} is for poses (this state is a vector, which has no frame): leave it out",
+        path, name_of(anchor));
   }
   const auto first = std::ranges::find_if(truths, [](const auto& one) { return one.has_value(); });
   if (first == truths.end()) return std::nullopt;

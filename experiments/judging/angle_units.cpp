@@ -2,6 +2,7 @@
 #include "experiments/judging/angle_units.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "engine/numbers/angle.hpp"
 #include "experiments/text/words.hpp"
 
@@ -65,8 +66,7 @@ std::string sign_of_degrees(const StateRows& rows, const AngleColumn& angle) {
   }
   const std::size_t steps = angle.value.size() - 1;
   if (large > 0 && static_cast<double>(large) >= kManySteps * static_cast<double>(steps)) {
-    return std::to_string(large) + " of " + std::to_string(steps) +
-           " steps from row to row are beyond pi";
+    return formatted("{} of {} steps from row to row are beyond pi", large, steps);
   }
   if (wraps > 0) return "it steps by nearly 360 where degrees begin again";
   if (angle.is_heading && agreement_with_motion(rows, angle, kDegree) > 0.9 &&
@@ -93,7 +93,7 @@ std::vector<AngleColumn> angles_of(const StateRows& rows) {
 }
 
 std::string place_in(const StateRows& rows, const std::filesystem::path& path, std::size_t row) {
-  return path.string() + ":" + std::to_string(rows.line[row]);
+  return formatted("{}:{}", path, rows.line[row]);
 }
 
 }  // namespace
@@ -104,10 +104,10 @@ void require_radians(const StateRows& rows, const std::filesystem::path& path) {
     if (!beyond || !angle.is_orientation) continue;
     const std::string sign = sign_of_degrees(rows, angle);
     if (sign.empty()) continue;
-    throw StudyError(place_in(rows, path, *beyond) + ": " + angle.name + " " +
-                     to_text(angle.value[*beyond]) + " is in degrees (" + sign +
-                     "): convert it to rad (degrees times pi / 180), and its covariance too if "
-                     "that is in degrees");
+    throw StudyError(
+        "{}: {} {} is in degrees ({}): convert it to rad (degrees times pi / 180), and its "
+        "covariance too if that is in degrees",
+        place_in(rows, path, *beyond), angle.name, to_text(angle.value[*beyond]), sign);
   }
 }
 
@@ -117,8 +117,8 @@ std::string note_on_angles(const StateRows& rows, const std::filesystem::path& p
     if (!beyond) continue;
     const bool begins_there = *beyond == 0 && angle.is_orientation;
     if (!begins_there && (angle.is_orientation || sign_of_degrees(rows, angle).empty())) continue;
-    return place_in(rows, path, *beyond) + ": " + angle.name + " " + to_text(angle.value[*beyond]) +
-           " (more than two turns; it is judged as rad): is it in degrees?";
+    return formatted("{}: {} {} (more than two turns; it is judged as rad): is it in degrees?",
+                     place_in(rows, path, *beyond), angle.name, to_text(angle.value[*beyond]));
   }
   return "";
 }

@@ -133,9 +133,10 @@ ErrorConvention stated_error(const StateShape& shape, const std::filesystem::pat
   const std::string likeness = likeness_to_pose(shape);
   if (!said && known.size() == 1 && likeness.empty()) return known.front();
   if (!said && known.size() == 1) {
-    throw StudyError("judge: --error is missing (" + path.string() +
-                     " is judged as a vector, mean - truth: " + likeness +
-                     "): give --error world if it is a vector");
+    throw StudyError(
+        "judge: --error is missing ({} is judged as a vector, mean - truth: {}): give --error "
+        "world if it is a vector",
+        path, likeness);
   }
   if (!said) {
     throw StudyError(
@@ -145,11 +146,10 @@ ErrorConvention stated_error(const StateShape& shape, const std::filesystem::pat
   }
   if (std::ranges::find(known, *said) != known.end()) return *said;
   if (known.size() > 1) return ErrorConvention::world;  // in the plane, world-body is world
-  throw StudyError("--error " + name_of(*said) + ": not of a vector (" + path.string() +
-                   " has no pose, and only poses have frames" +
-                   (likeness.empty() ? "" : "; " + likeness) +
-                   "): name the columns of the pose, or judge the error mean - truth of the vector "
-                   "by --error world");
+  throw StudyError(
+      "--error {}: not of a vector ({} has no pose, and only poses have frames{}): name the "
+      "columns of the pose, or judge the error mean - truth of the vector by --error world",
+      name_of(*said), path, likeness.empty() ? "" : "; " + likeness);
 }
 
 Eigen::VectorXd error_of(const StateShape& shape, Convention convention,

@@ -2,6 +2,7 @@
 #include "experiments/judging/estimate_arrays.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "engine/records/fingerprint.hpp"
 #include "engine/records/result_format.hpp"
 #include "engine/text/visible_text.hpp"
@@ -22,7 +23,7 @@ namespace {
 std::string axes_text(const h5::Shape& shape) {
   std::vector<std::string> lengths;
   for (const auto length : shape) lengths.push_back(std::to_string(length));
-  return "{" + joined(lengths) + "}";
+  return formatted("{{{}}}", joined(lengths));
 }
 
 bool is_all_nan(std::span<const double> numbers) {
@@ -38,8 +39,7 @@ std::vector<std::string> header_of(const std::vector<std::string>& columns, std:
   std::vector<std::string> header = {kTimeColumn};
   header.insert(header.end(), columns.begin(), columns.end());
   for (std::size_t i = 0; i < dimension; ++i) {
-    for (std::size_t j = 0; j < dimension; ++j)
-      header.push_back("cov_" + std::to_string(i) + "_" + std::to_string(j));
+    for (std::size_t j = 0; j < dimension; ++j) header.push_back(formatted("cov_{}_{}", i, j));
   }
   return header;
 }
@@ -93,23 +93,24 @@ void EstimateArrays::require_order() const {
   const h5::Shape& of = states_.shape;
   const bool is_turned = covariance_.shape == h5::Shape{of[0], of[0], of[1], of[2]};
   if (!is_turned || covariance_.shape == h5::Shape{of[0], of[1], of[2], of[2]}) return;
-  refuse("covariance", "has the axes " + axes_text(covariance_.shape) +
-                           " (the order of MATLAB and Julia, in which a file has them turned "
-                           "round): write permute(covariance, [4 3 2 1]), and the other arrays "
-                           "turned round too");
+  refuse("covariance",
+         formatted(
+             "has the axes {} (the order of MATLAB and Julia, in which a file has them turned "
+             "round): write permute(covariance, [4 3 2 1]), and the other arrays turned round too",
+             axes_text(covariance_.shape)));
 }
 
 void EstimateArrays::refuse(const std::string& name, const std::string& reason) const {
-  throw StudyError(path_.string() + ": " + name + " " + reason);
+  throw StudyError("{}: {} {}", path_, name, reason);
 }
 
 /// Opens an array of `axes` axes, of which that of runs may be left out, or have length 1, if all
 /// runs share it. With `save -hdf5` Octave writes a group that has the array as `value`.
 EstimateArrays::Array EstimateArrays::open(const std::string& name, std::size_t axes) const {
   if (!file_.has(name)) {
-    refuse(name, "is missing (arrays are error, or mean and truth, with covariance; the file has " +
-                     joined(file_.members()) +
-                     "): write it, as experiments/JUDGING_ESTIMATES.md shows");
+    refuse(name, formatted("is missing (arrays are error, or mean and truth, with covariance; the "
+                           "file has {}): write it, as experiments/JUDGING_ESTIMATES.md shows",
+                           joined(file_.members())));
   }
   const bool is_of_octave = file_.is_group(name) && file_.has(name + "/value");
   const std::string dataset = is_of_octave ? name + "/value" : name;
@@ -120,9 +121,9 @@ EstimateArrays::Array EstimateArrays::open(const std::string& name, std::size_t 
     array.shape.erase(array.shape.begin());
   array.has_runs = array.shape.size() == axes;
   if (!array.has_runs && !(may_be_shared && array.shape.size() + 1 == axes)) {
-    refuse(name, "has the axes " + axes_text(array.shape) + " (" + std::to_string(axes) +
-                     " are needed, the first of runs): give an array of one run an axis of "
-                     "length 1");
+    refuse(name, formatted("has the axes {} ({} are needed, the first of runs): give an array of "
+                           "one run an axis of length 1",
+                           axes_text(array.shape), axes));
   }
   return array;
 }
@@ -137,9 +138,10 @@ void EstimateArrays::require_axes(const Array& array, const h5::Shape& wanted,
                                   std::string_view axes) const {
   const std::size_t first = array.has_runs ? 0 : 1;
   if (std::ranges::equal(array.shape, std::span(wanted).subspan(first))) return;
-  refuse(array.name, "has the axes " + axes_text(array.shape) + " (" + std::string(axes) + " is " +
-                         axes_text(wanted) +
-                         "): give all arrays the same runs, scans and components");
+  refuse(
+      array.name,
+      formatted("has the axes {} ({} is {}): give all arrays the same runs, scans and components",
+                axes_text(array.shape), axes, axes_text(wanted)));
 }
 
 /// The shape of the state by the attribute `names`; without it the columns are e0, e1, ...
@@ -166,13 +168,13 @@ StateShape EstimateArrays::shape_of_names() const {
     refuse("names", "have characters that cannot be printed: write plain names");
   }
   if (columns.size() != width) {
-    refuse("names", "has " + std::to_string(columns.size()) + " columns (" + states_.name +
-                        " has " + std::to_string(width) + "): name each column once");
+    refuse("names", formatted("has {} columns ({} has {}): name each column once", columns.size(),
+                              states_.name, width));
   }
   StateShape shape = estimate_fields(header_of(columns, d), path_.string() + ": names").shape;
   if (shape.dimension() != d) {
-    refuse("covariance", "has " + std::to_string(d) + " components (the state has " +
-                             std::to_string(shape.dimension()) + "): write that of the error");
+    refuse("covariance", formatted("has {} components (the state has {}): write that of the error",
+                                   d, shape.dimension()));
   }
   if (shape.columns != columns) {
     refuse("names", "are not those of montecarta: write " + joined(shape.columns, ","));
@@ -199,15 +201,18 @@ StateRows EstimateArrays::states_of(const Array& array, std::size_t run,
   for (std::size_t s = 0; s < states_.shape[1]; ++s) {
     const auto state = std::span(all).subspan(s * width, width);
     if (is_all_nan(state)) continue;
-    const std::string scan = place + ":" + std::to_string(s);
+    const std::string scan = formatted("{}:{}", place, s);
     if (!is_all_finite(state)) {
-      throw StudyError(scan + ": some numbers of " + array.name +
-                       " are not finite (a scan is missing if all are NaN): give all, or none");
+      throw StudyError(
+          "{}: some numbers of {} are not finite (a scan is missing if all are NaN): give all, or "
+          "none",
+          scan, array.name);
     }
     const double at = time.empty() ? static_cast<double>(s) : time[s];
     if (!std::isfinite(at) || (!rows.time.empty() && !(at > rows.time.back()))) {
-      throw StudyError(scan + ": time " + to_text(at) +
-                       " s is not later than that of the scan before: sort the scans by time");
+      throw StudyError(
+          "{}: time {} s is not later than that of the scan before: sort the scans by time", scan,
+          to_text(at));
     }
     rows.time.push_back(at);
     rows.line.push_back(s);
@@ -219,11 +224,11 @@ StateRows EstimateArrays::states_of(const Array& array, std::size_t run,
 }
 
 std::filesystem::path EstimateArrays::place(std::size_t /*cell*/, std::size_t run) const {
-  return path_.string() + " (run " + std::to_string(run) + ", scan)";
+  return formatted("{} (run {}, scan)", path_, run);
 }
 
 std::filesystem::path EstimateArrays::truth_place(std::size_t /*cell*/, std::size_t run) const {
-  return path_.string() + " (truth of run " + std::to_string(run) + ", scan)";
+  return formatted("{} (truth of run {}, scan)", path_, run);
 }
 
 std::vector<double> EstimateArrays::times(std::size_t cell, std::size_t run) const {
@@ -243,7 +248,7 @@ StateRows EstimateArrays::estimates(std::size_t cell, std::size_t run) const {
   const std::vector<double> nis = numbers(*nis_, run), dof = numbers(*nis_dof_, run);
   for (const std::size_t s : rows.line) {
     const bool is_known = !std::isnan(nis[s]);
-    const std::string scan = place(cell, run).string() + ":" + std::to_string(s);
+    const std::string scan = formatted("{}:{}", place(cell, run), s);
     rows.nis.push_back(is_known ? nis[s] : 0.0);
     rows.nis_dof.push_back(is_known ? checked_dof(nis[s], dof[s], scan) : 0);
   }
@@ -255,7 +260,7 @@ StateRows EstimateArrays::truth(std::size_t cell, std::size_t run,
   expect(truth_.has_value(), "errors have no truth");
   StateRows rows = states_of(*truth_, run, truth_place(cell, run));
   if (!rows.time.empty()) return rows;
-  refuse("truth", "of run " + std::to_string(run) + " is NaN at all scans: give true states");
+  refuse("truth", formatted("of run {} is NaN at all scans: give true states", run));
 }
 
 TextPairs EstimateArrays::contents() const {

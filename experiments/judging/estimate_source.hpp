@@ -25,7 +25,7 @@ class EstimateSource {
   virtual std::string sensor(std::size_t /*cell*/) const { return ""; }
   /// {run} Numbers of the runs, consecutive and increasing.
   virtual const std::vector<std::uint64_t>& runs() const = 0;
-  /// Where the estimates of a run are, for messages.
+  /// The file (or the array) with the estimates of a run, for messages.
   virtual std::filesystem::path place(std::size_t cell, std::size_t run) const = 0;
   virtual std::filesystem::path truth_place(std::size_t cell, std::size_t run) const = 0;
 

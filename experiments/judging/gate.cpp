@@ -14,14 +14,16 @@ Gate::Gate(const std::string& text) : text_(text) {
   const auto number = to_number(is_share ? text.substr(0, text.size() - 1) : text);
   const bool is_good = number && *number > 0.0 && (is_share ? *number < 100.0 : *number < 1e6);
   if (!is_good) {
-    throw StudyError("--gate " + excerpt(text) +
-                     ": neither a limit of the NIS nor a share that passes: write e.g. 9 or 99%");
+    throw StudyError(
+        "--gate {}: neither a limit of the NIS nor a share that passes: write e.g. 9 or 99%",
+        excerpt(text));
   }
   constexpr double kLeast = 1.0, kLikeShare = 90.0, kWhole = 100.0;
   if (!is_share && (*number < kLeast || (*number >= kLikeShare && *number < kWhole))) {
-    throw StudyError("--gate " + text +
-                     ": a limit of the NIS, or a share of innovations that passes? " + "Write " +
-                     to_text(*number < kLeast ? 100.0 * *number : *number) + "% for the share");
+    throw StudyError(
+        "--gate {}: a limit of the NIS, or a share of innovations that passes? Write {}% for the "
+        "share",
+        text, to_text(*number < kLeast ? 100.0 * *number : *number));
   }
   (is_share ? share_ : limit_) = is_share ? *number / 100.0 : *number;
 }

@@ -2,6 +2,7 @@
 #include "experiments/judging/imported_plan.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>
@@ -66,10 +67,10 @@ TextPairs import_settings(const StateShape& shape, const JudgingOptions& options
 std::string import_text(const EstimateSource& source, const TextPairs& settings) {
   const std::vector<std::uint64_t>& runs = source.runs();
   TextPairs all = settings;
-  all.emplace_back("runs", std::to_string(runs.front()) + ":" + std::to_string(runs.back() + 1));
+  all.emplace_back("runs", formatted("{}:{}", runs.front(), runs.back() + 1));
   std::ranges::copy(source.contents(), std::back_inserter(all));
   std::string text = std::string(kImportedSection) + "\n";
-  for (const auto& [name, value] : all) text += name + " = " + value + "\n";
+  for (const auto& [name, value] : all) text += formatted("{} = {}\n", name, value);
   return text;
 }
 
@@ -99,8 +100,8 @@ std::vector<Eigen::Index> judged_components(const StateShape& shape,
   for (const std::string& name : wanted.empty() ? shape.components : wanted) {
     const auto found = std::ranges::find(shape.components, name);
     if (found == shape.components.end()) {
-      throw StudyError("--components: no component '" + excerpt(name) + "' (the state has " +
-                       joined(shape.components, ",") + "): choose among them");
+      throw StudyError("--components: no component '{}' (the state has {}): choose among them",
+                       excerpt(name), joined(shape.components, ","));
     }
     judged.push_back(found - shape.components.begin());
   }
@@ -135,7 +136,8 @@ StudyPlan imported_plan(const EstimateSource& source, const StateRows& first,
   TextPairs all = settings;
   all.insert(all.end(), plan.scenario.begin() + 1, plan.scenario.end());
   plan.resolved_text = import_text(source, all);
-  if (options.within) plan.resolved_text += "[study]\nwithin = " + to_text(*options.within) + "\n";
+  if (options.within)
+    plan.resolved_text += formatted("[study]\nwithin = {}\n", to_text(*options.within));
   return plan;
 }
 

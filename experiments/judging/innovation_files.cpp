@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/judging/innovation_files.hpp"
 
+#include "engine/formatted.hpp"
 #include "experiments/files/files.hpp"
 #include "experiments/judging/innovation_rows.hpp"
 #include "experiments/judging/time_units.hpp"
@@ -42,7 +43,7 @@ InnovationFiles::InnovationFiles(JudgedFiles files, std::optional<Gate> gate)
       continue;
     }
     for (const std::string& sensor : sensors) {
-      labels_.push_back(label + "." + sensor);
+      labels_.push_back(formatted("{}.{}", label, sensor));
       check_label(labels_.back());
       parts_.push_back({c, sensor});
     }

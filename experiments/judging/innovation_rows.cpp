@@ -3,6 +3,7 @@
 
 #include "analysis/statistics/distributions.hpp"
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "engine/numbers/angle.hpp"
 #include "experiments/text/words.hpp"
 
@@ -24,10 +25,10 @@ std::size_t place_in(const StateRows& rows, double time, double tolerance, const
   auto k = static_cast<std::size_t>(after - rows.time.begin());
   if (k == rows.time.size() || (k > 0 && time - rows.time[k - 1] < rows.time[k] - time)) --k;
   if (std::abs(rows.time[k] - time) <= tolerance) return k;
-  file.refuse("no estimate in " + estimates.string() + " has time " + to_text(time) +
-              " s (the nearest has " + to_text(rows.time[k]) +
-              " s): give innovations the times of the estimates after them, or leave out "
-              "innovations without an estimate");
+  file.refuse(
+      formatted("no estimate in {} has time {} s (the nearest has {} s): give innovations the "
+                "times of the estimates after them, or leave out innovations without an estimate",
+                estimates, to_text(time), to_text(rows.time[k])));
 }
 
 /// Counts a row of innovations if one of them is an angle beyond pi.
@@ -39,7 +40,8 @@ void count_unwrapped(const CsvRows& file, const EstimateFields& fields, StateRow
     const double angle = file.number(fields.state[k], "number");
     if (std::abs(angle) <= kMost) continue;
     if (rows.unwrapped_innovations++ > 0) return;
-    rows.first_unwrapped = file.place() + ": " + fields.shape.columns[k] + " " + to_text(angle);
+    rows.first_unwrapped =
+        formatted("{}: {} {}", file.place(), fields.shape.columns[k], to_text(angle));
     return;
   }
 }
@@ -53,8 +55,10 @@ double without_gate(const CsvRows& file, double nis, std::uint32_t dof,
                     const std::optional<Gate>& gate) {
   if (!gate) return nis;
   if (dof > 0 && nis > gate->limit(dof) * (1.0 + analysis::kRoundingOfGate)) {
-    file.refuse("a NIS of " + to_text(nis) + " is beyond --gate " + gate->text() +
-                " (which the filter leaves out): leave it out, or give the gate that it has");
+    file.refuse(
+        formatted("a NIS of {} is beyond --gate {} (which the filter leaves out): leave it out, or "
+                  "give the gate that it has",
+                  to_text(nis), gate->text()));
   }
   return gate->without_gate(nis, dof);
 }
@@ -135,8 +139,8 @@ std::optional<fs::path> innovations_beside(const fs::path& estimates) {
 void read_innovations(const fs::path& path, const fs::path& estimates, double tolerance,
                       StateRows& rows, const InnovationChoice& choice) {
   if (!rows.nis.empty()) {
-    throw StudyError(path.string() + ": innovations, and " + estimates.string() +
-                     " has nis too (which one is it?): remove one");
+    throw StudyError("{}: innovations, and {} has nis too (which one is it?): remove one", path,
+                     estimates);
   }
   CsvRows file(path);
   const EstimateFields fields = innovation_fields(file.columns(), file.place());

@@ -3,6 +3,7 @@
 
 #include "analysis/run/nees.hpp"
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "engine/records/posix_file.hpp"
 #include "experiments/judging/imported_plan.hpp"
 #include "experiments/judging/likely_mistakes.hpp"
@@ -30,12 +31,12 @@ namespace fs = std::filesystem;
 void require_alike(const StateRows& rows, const fs::path& path, const StateRows& first,
                    const fs::path& first_path) {
   if (rows.shape != first.shape) {
-    throw StudyError(path.string() + ": another state than in " + first_path.string() +
-                     " (one study judges one state): judge them apart");
+    throw StudyError("{}: another state than in {} (one study judges one state): judge them apart",
+                     path, first_path);
   }
   if (rows.time.empty() || rows.nis.empty() == first.nis.empty()) return;
-  throw StudyError(path.string() + ": " + (rows.nis.empty() ? "no nis" : "has nis") + " (in " +
-                   first_path.string() + " it is otherwise): give it in all files or in none");
+  throw StudyError("{}: {} (in {} it is otherwise): give it in all files or in none", path,
+                   rows.nis.empty() ? "no nis" : "has nis", first_path);
 }
 
 /// The estimates of one file, with the scan and the truth of each row.
@@ -70,9 +71,9 @@ void end_run(const MatchedRows& run, const ScanClock& clock, std::size_t cell, R
   };
   const bool is_failed = run.scans.empty() || goes_on();
   if (!is_failed) return record.mark_complete(kUnknownCost);
-  const std::string reason = run.scans.empty()
-                                 ? "no estimates"
-                                 : "estimates end at " + to_text(run.rows.time.back()) + " s";
+  const std::string reason =
+      run.scans.empty() ? "no estimates"
+                        : formatted("estimates end at {} s", to_text(run.rows.time.back()));
   record.mark_failed(static_cast<std::uint32_t>(next), reason, kUnknownCost);
 }
 
@@ -155,10 +156,11 @@ void require_tolerance(const fs::path& path, std::span<const double> times,
                        const TimeMatch& match) {
   const double least = least_spacing(times);
   if (2.0 * match.tolerance < least) return;
-  throw StudyError("--tolerance " + to_text(match.tolerance) + ": rows of " + path.string() +
-                   " are " + to_text(least) + " s apart (half of that cannot tell neighbours " +
-                   "apart): use " + (match.interpolate ? "" : "--interpolate, or ") +
-                   "a smaller --tolerance");
+  throw StudyError(
+      "--tolerance {}: rows of {} are {} s apart (half of that cannot tell neighbours apart): use "
+      "{}a smaller --tolerance",
+      to_text(match.tolerance), path, to_text(least),
+      match.interpolate ? "" : "--interpolate, or ");
 }
 
 /// The clock of all files, and the file with the most rows, which has the state and innovations of
@@ -191,15 +193,13 @@ Overview overview_of(const EstimateSource& source, const JudgingOptions& options
     return {source.place(c, run), std::move(rows), ScanClock(times, options.match.tolerance)};
   }
   throw StudyError(
-      source.place(c, run).string() +
-      (options.anchor ? ": at most one row, also in all other files (the first is the "
-                        "anchor, and nothing is left to judge): write "
-       : !options.windows.empty()
-           ? ": no increment over --windows, nor in any other file (neighbouring rows "
-             "are farther apart, or the drive is shorter): choose other windows, or write "
-           : ": no rows behind the header, nor in any other file (nothing "
-             "to judge): write ") +
-      "one row for each time");
+      "{}: {} one row for each time", source.place(c, run),
+      options.anchor ? "at most one row, also in all other files (the first is the anchor, and "
+                       "nothing is left to judge): write"
+      : !options.windows.empty()
+          ? "no increment over --windows, nor in any other file (neighbouring rows are farther "
+            "apart, or the drive is shorter): choose other windows, or write"
+          : "no rows behind the header, nor in any other file (nothing to judge): write");
 }
 
 /// Whether there are states with truths, and not innovations alone.
@@ -214,8 +214,10 @@ class UnwrappedInnovations {
   }
   std::vector<std::string> notes() const {
     if (count_ == 0) return {};
-    return {"innovations with an angle beyond pi: " + std::to_string(count_) + ", the first in " +
-            first_ + " (they are judged as they are): wrap differences of angles to -pi to pi"};
+    return {
+        formatted("innovations with an angle beyond pi: {}, the first in {} (they are judged as "
+                  "they are): wrap differences of angles to -pi to pi",
+                  count_, first_)};
   }
 
  private:
@@ -228,14 +230,15 @@ std::vector<std::string> notes_on_times(const Overview& all, std::uint64_t missi
   std::vector<std::string> notes;
   if (!all.clock.is_common()) {
     notes.push_back(
-        "runs have clocks of their own: row k of each is judged with row k of the "
-        "others, at the times of " +
-        all.path.string() + ", and a run with fewer rows is not counted as failed");
+        formatted("runs have clocks of their own: row k of each is judged with row k of the "
+                  "others, at the times of {}, and a run with fewer rows is not counted as failed",
+                  all.path));
   }
   if (missing > 0) {
-    notes.push_back(std::to_string(missing) + (missing == 1 ? " sample is" : " samples are") +
-                    " missing (a scan of other runs without an estimate): each run is judged by "
-                    "the scans that it has");
+    notes.push_back(
+        formatted("{} {} missing (a scan of other runs without an estimate): each run is judged by "
+                  "the scans that it has",
+                  missing, missing == 1 ? "sample is" : "samples are"));
   }
   return notes;
 }
@@ -259,8 +262,10 @@ class SeenInnovations {
     if (numbers.size() < 2) return;
     const auto [earlier, is_new] = seen_.try_emplace({cell, std::move(numbers)}, path);
     if (is_new) return;
-    throw StudyError(path.string() + ": has the innovations of " + earlier->second.string() +
-                     ", number by number (runs must be independent): give each run once");
+    throw StudyError(
+        "{}: has the innovations of {}, number by number (runs must be independent): give each run "
+        "once",
+        path, earlier->second);
   }
 
  private:
@@ -306,10 +311,11 @@ struct RunNotes {
   std::vector<std::string> notes_on_anchor() const {
     constexpr double kMostShare = 0.01;
     if (share_at_anchor <= kMostShare) return {};
-    return {"at the first estimate, onto which --anchor moves the truth, a variance is " +
-            to_text(std::round(100.0 * share_at_anchor)) + " % of the last one in " + of_share +
-            " (it describes more " +
-            "than the error since then): the verdict leans to conservative"};
+    return {
+        formatted("at the first estimate, onto which --anchor moves the truth, a variance is {} % "
+                  "of the last one in {} (it describes more than the error since then): the "
+                  "verdict leans to conservative",
+                  to_text(std::round(100.0 * share_at_anchor)), of_share)};
   }
 
   std::vector<std::string> all(const EstimateSource& source, const Overview& overview) const {

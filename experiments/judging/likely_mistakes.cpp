@@ -2,6 +2,7 @@
 #include "experiments/judging/likely_mistakes.hpp"
 
 #include "analysis/run/nees.hpp"
+#include "engine/formatted.hpp"
 #include "engine/text/number_text.hpp"
 #include "experiments/judging/angle_units.hpp"
 #include "experiments/judging/time_units.hpp"
@@ -66,11 +67,11 @@ Eigen::VectorXd from_w_first(const Eigen::VectorXd& pose) {
 }
 
 std::string place_of_line(const std::filesystem::path& path, std::size_t line) {
-  return path.string() + ":" + std::to_string(line);
+  return formatted("{}:{}", path, line);
 }
 
 std::string of_rows(std::uint64_t some, std::uint64_t all) {
-  return std::to_string(some) + " of " + std::to_string(all) + " rows";
+  return formatted("{} of {} rows", some, all);
 }
 
 /// Columns beside a pose in space that look like parts of a velocity and are not turned with it.
@@ -216,13 +217,12 @@ void LikelyMistakes::add_marks(const OfCell& cell, std::vector<std::string>& not
       continue;
     }
     const std::string others = remaining(cell.shape, names);
-    notes.push_back(cell.label + ": " + joined(names) +
-                    (names.size() == 1 ? " has the variance " : " have the variance ") +
-                    to_text(first->value) + " in " + of_rows(first->rows, cell.rows) +
-                    ", the first in " + first->first + " (" + reasons[sign] +
-                    (others.empty()
-                         ? "): write variances of the errors"
-                         : "): for a verdict on the others, add --components " + others));
+    notes.push_back(
+        formatted("{}: {} {} the variance {} in {}, the first in {} ({}): {}", cell.label,
+                  joined(names), names.size() == 1 ? "has" : "have", to_text(first->value),
+                  of_rows(first->rows, cell.rows), first->first, reasons[sign],
+                  others.empty() ? "write variances of the errors"
+                                 : "for a verdict on the others, add --components " + others));
   }
 }
 
@@ -233,29 +233,31 @@ void LikelyMistakes::add_notes(const OfCell& cell, std::vector<std::string>& not
     const Misfit &stated = cell.as_stated, &other = cell.w_first[k];
     if (!(other.angle < kMuchNearer * stated.angle)) continue;
     const auto mean = [&](double sum) { return compact(sum / static_cast<double>(cell.rows)); };
-    notes.push_back(cell.label + ": the quaternions of the " + (k == 0 ? "estimates" : "truth") +
-                    " may be written with w first, under the header qx,qy,qz,qw (then rotations "
-                    "would be " +
-                    mean(other.angle) + " rad from the truth on average, with a NEES ratio of " +
-                    mean(other.nees) + ", and are " + mean(stated.angle) +
-                    " rad): write x, y, z, w");
+    notes.push_back(
+        formatted("{}: the quaternions of the {} may be written with w first, under the header "
+                  "qx,qy,qz,qw (then rotations would be {} rad from the truth on average, with a "
+                  "NEES ratio of {}, and are {} rad): write x, y, z, w",
+                  cell.label, k == 0 ? "estimates" : "truth", mean(other.angle), mean(other.nees),
+                  mean(stated.angle)));
   }
   if (const std::string velocities = unturned_velocities(cell.shape); !velocities.empty()) {
-    notes.push_back(cell.label + ": " + velocities +
-                    " may be parts of a velocity, and are judged " +
-                    "as differences of numbers: name it vx_mps,vy_mps,vz_mps if it is in the map");
+    notes.push_back(
+        formatted("{}: {} may be parts of a velocity, and are judged as differences of numbers: "
+                  "name it vx_mps,vy_mps,vz_mps if it is in the map",
+                  cell.label, velocities));
   }
   if (2 * cell.apart > cell.runs) {
-    notes.push_back(cell.label + ": " + std::to_string(cell.apart) + " of " +
-                    std::to_string(cell.runs) + (cell.runs == 1 ? " run begins" : " runs begin") +
-                    " far from the truth for the deviations that they claim (" +
-                    compact(cell.distance) + " m in " + cell.first_apart +
-                    "): if the frames differ, see --anchor");
+    notes.push_back(
+        formatted("{}: {} of {} {} far from the truth for the deviations that they claim ({} m in "
+                  "{}): if the frames differ, see --anchor",
+                  cell.label, cell.apart, cell.runs, cell.runs == 1 ? "run begins" : "runs begin",
+                  compact(cell.distance), cell.first_apart));
   }
   if (10 * cell.later_copies > cell.rows) {  // the first row may be known exactly
-    notes.push_back(cell.label + ": the estimates equal the truth, number by number, in " +
-                    of_rows(cell.copies, cell.rows) + ", the first in " + cell.first_copy +
-                    ": are they a copy of it?");
+    notes.push_back(
+        formatted("{}: the estimates equal the truth, number by number, in {}, the first in {}: "
+                  "are they a copy of it?",
+                  cell.label, of_rows(cell.copies, cell.rows), cell.first_copy));
   }
 }
 
@@ -264,9 +266,9 @@ std::vector<std::string> LikelyMistakes::notes() const {
   std::ranges::copy_if(std::vector{on_times_, on_angles_}, std::back_inserter(notes),
                        [](const std::string& note) { return !note.empty(); });
   if (left_out_ > 0) {
-    notes.push_back(std::to_string(left_out_) + (left_out_ == 1 ? " row is" : " rows are") +
-                    " left out by --keep, the first in " + first_left_out_ +
-                    " (another row has the same time)");
+    notes.push_back(
+        formatted("{} {} left out by --keep, the first in {} (another row has the same time)",
+                  left_out_, left_out_ == 1 ? "row is" : "rows are", first_left_out_));
   }
   for (const OfCell& cell : cells_) add_notes(cell, notes);
   return notes;

@@ -2,6 +2,7 @@
 #include "experiments/judging/run_files.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "experiments/judging/run_numbers.hpp"
 #include "experiments/text/words.hpp"
 
@@ -60,9 +61,10 @@ void add_run(const NumberedFile& file, FilesByRun& files) {
   }
   const auto [there, is_new] = files.try_emplace(file.run, file.path);
   if (is_new) return;
-  throw StudyError(file.path.string() + ": run " + to_text(file.run) + " again (" +
-                   there->second.string() + " has the same number and the same estimator): " +
-                   "give each run a number, each estimator a folder or a name");
+  throw StudyError(
+      "{}: run {} again ({} has the same number and the same estimator): give each run a number, "
+      "each estimator a folder or a name",
+      file.path, to_text(file.run), there->second);
 }
 
 /// The words in which a cell's path differs from those of the other cells, joined to a label.
@@ -112,8 +114,8 @@ void require_same_runs(const FilesByRun& wanted, const FilesByRun& given, const 
     const auto runs_of = [](const FilesByRun& files) {
       return std::to_string(files.size()) + (files.size() == 1 ? " run" : " runs");
     };
-    throw StudyError(file.string() + ": run " + to_text(run) + " has no " + of + " (" +
-                     runs_of(wanted) + " there, " + runs_of(given) + " here): " + remedy);
+    throw StudyError("{}: run {} has no {} ({} there, {} here): {}", file, to_text(run), of,
+                     runs_of(wanted), runs_of(given), remedy);
   }
 }
 
@@ -135,11 +137,10 @@ bool are_consecutive(const FilesByRun& runs, bool are_called_runs) {
     }
     const std::uint64_t last = run[0] - 1;
     throw StudyError(
-        file.string() + ": " +
-        (next == last ? "run " + std::to_string(next) + " is"
-                      : "runs " + std::to_string(next) + " to " + std::to_string(last) + " are") +
-        " missing (run numbers must be consecutive; a failed run is a result): give "
-        "a failed run the file that it wrote, the header at least");
+        "{}: {} missing (run numbers must be consecutive; a failed run is a result): give a failed "
+        "run the file that it wrote, the header at least",
+        file,
+        next == last ? formatted("run {} is", next) : formatted("runs {} to {} are", next, last));
   }
   return true;
 }
@@ -178,9 +179,10 @@ void check_label(const std::string& label) {
     return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '.';
   });
   if (is_good && !label.empty() && label.size() <= 100 && label != "." && label != "..") return;
-  throw StudyError("'" + excerpt(label) +
-                   "' cannot label a cell (up to 100 letters, digits, _ - . can): rename the "
-                   "folder, or give --cell NAME");
+  throw StudyError(
+      "'{}' cannot label a cell (up to 100 letters, digits, _ - . can): rename the folder, or give "
+      "--cell NAME",
+      excerpt(label));
 }
 
 JudgedFiles pair_files(const std::vector<std::string>& estimates,
@@ -223,9 +225,10 @@ std::string note_on_names(const JudgedFiles& files) {
   const std::size_t shown = std::min(files.names.size(), kMostNames);
   std::string names = joined(std::span(files.names).first(shown));
   if (shown < files.names.size()) names += ", ... to " + files.names.back();
-  return "the numbers in the names of the runs are not consecutive (" + names +
-         "): in this order, the runs are called " + std::to_string(files.runs.front()) + " to " +
-         std::to_string(files.runs.back());
+  return formatted(
+      "the numbers in the names of the runs are not consecutive ({}): in this order, the runs are "
+      "called {} to {}",
+      names, files.runs.front(), files.runs.back());
 }
 
 }  // namespace montecarta::experiments

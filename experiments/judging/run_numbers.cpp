@@ -29,7 +29,7 @@ struct NumberSlot {
   std::uint64_t value = 0;
   std::string word;       ///< letters before it, in lower case
   std::size_t part = 0;   ///< index of the folder, or of the file behind the folders
-  std::size_t begin = 0;  ///< of its digits in the part
+  std::size_t begin = 0;  ///< first of its digits in the part
   std::size_t end = 0;
 };
 

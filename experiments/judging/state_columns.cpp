@@ -3,6 +3,7 @@
 
 #include "analysis/run/nees.hpp"
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>
@@ -97,30 +98,31 @@ void refuse_other_time(const std::string& column, const std::string& place) {
   const std::map<std::string, std::string> factors = {{"ns", "1e9"}, {"us", "1e6"}, {"ms", "1e3"}};
   const auto factor = factors.find(unit);
   if (factor != factors.end() && (column.starts_with("time") || column.starts_with("t_"))) {
-    throw StudyError(place + ": '" + excerpt(column) + "' is in " + unit +
-                     " (times are in s): divide it by " + factor->second + ", and name it time_s");
+    throw StudyError("{}: '{}' is in {} (times are in s): divide it by {}, and name it time_s",
+                     place, excerpt(column), unit, factor->second);
   }
   const Names others = {"t",        "t_s",       "time",        "times",
                         "time_sec", "timestamp", "timestamp_s", "stamp"};
   if (has_name(others, column)) {
-    throw StudyError(place + ": '" + column +
-                     "' is not the name of times (they are in s): name the column time_s");
+    throw StudyError("{}: '{}' is not the name of times (they are in s): name the column time_s",
+                     place, column);
   }
 }
 
 void check_header(const Names& header, const std::string& place) {
   refuse_other_time(header.front(), place);
   if (header.front() != kTimeColumn) {
-    throw StudyError(place + ": '" + excerpt(header.front()) +
-                     "' is not the first column (times come first): begin the header with time_s, "
-                     "or convert the file by "
-                     "experiments/convert/estimates.py");
+    throw StudyError(
+        "{}: '{}' is not the first column (times come first): begin the header with time_s, or "
+        "convert the file by experiments/convert/estimates.py",
+        place, excerpt(header.front()));
   }
   for (std::size_t i = 0; i < header.size(); ++i) {
     if (header[i].empty() || place_of_name(header, header[i]) != i) {
-      throw StudyError(place + ": column " + std::to_string(i + 1) + " '" + excerpt(header[i]) +
-                       "' has no name of its own (columns are known by their names): name each "
-                       "column once");
+      throw StudyError(
+          "{}: column {} '{}' has no name of its own (columns are known by their names): name each "
+          "column once",
+          place, i + 1, excerpt(header[i]));
     }
   }
 }
@@ -131,17 +133,17 @@ void refuse_other_units(const std::string& column, const std::string& component,
   const Names degrees = {"deg", "degs", "degree", "degrees"}, radians = {"radian", "radians"},
               metres = {"meter", "meters", "metre", "metres"}, lengths = {"mm", "cm", "km", "ft"};
   if (has_name(degrees, unit)) {
-    throw StudyError(place + ": '" + excerpt(column) +
-                     "' is in degrees (angles are in rad): convert it and its covariance");
+    throw StudyError("{}: '{}' is in degrees (angles are in rad): convert it and its covariance",
+                     place, excerpt(column));
   }
   const bool is_radians = has_name(radians, unit);
   if (is_radians || has_name(metres, unit)) {
-    throw StudyError(place + ": '" + excerpt(column) + "' has a unit that is not read (rad and m " +
-                     "are): rename it to " + component + (is_radians ? "_rad" : "_m"));
+    throw StudyError("{}: '{}' has a unit that is not read (rad and m are): rename it to {}{}",
+                     place, excerpt(column), component, is_radians ? "_rad" : "_m");
   }
   if (has_name(lengths, unit) && has_name(kNeedUnit, component)) {
-    throw StudyError(place + ": '" + excerpt(column) + "' is in " + unit +
-                     " (positions are in m): convert it and its covariance");
+    throw StudyError("{}: '{}' is in {} (positions are in m): convert it and its covariance", place,
+                     excerpt(column), unit);
   }
 }
 
@@ -152,8 +154,9 @@ std::pair<std::string, std::string> component_and_unit(const std::string& column
   const std::string unit = underscore == std::string::npos ? "" : column.substr(underscore + 1);
   refuse_other_units(column, column.substr(0, underscore), unit, place);
   if (has_name(kNeedUnit, column)) {
-    throw StudyError(place + ": '" + column + "' has no unit (m and rad are part of the name): " +
-                     "write x_m, y_m, heading_rad");
+    throw StudyError(
+        "{}: '{}' has no unit (m and rad are part of the name): write x_m, y_m, heading_rad", place,
+        column);
   }
   if (std::ranges::find(kKnownUnits, unit) == kKnownUnits.end()) return {column, "1"};
   return {column.substr(0, underscore), unit};
@@ -177,11 +180,11 @@ void add_components(const Names& columns, const std::string& place, StateShape& 
     if (const std::size_t same = place_of_name(shape.components, component);
         same < shape.components.size()) {
       const std::size_t behind = shape.columns.size() - shape.components.size();
-      throw StudyError(place + ": '" + shape.columns[same + behind] + "' and '" + column +
-                       "' are both of a component " + component + " (units do not count, and cov_" +
-                       component + "_" + component +
-                       " would be of either): name them apart, e.g. " + component + "1, " +
-                       component + "2");
+      throw StudyError(
+          "{}: '{}' and '{}' are both of a component {} (units do not count, and cov_{}_{} would "
+          "be of either): name them apart, e.g. {}1, {}2",
+          place, shape.columns[same + behind], column, component, component, component, component,
+          component);
     }
     shape.columns.push_back(column);
     shape.components.push_back(component);
@@ -212,8 +215,8 @@ StateShape shape_of_errors(const Names& state, const std::string& place) {
 
 StateShape shape_of(const Names& state, const std::string& place) {
   if (state.empty()) {
-    throw StudyError(place + ": no state (the header has times and covariances alone): add e.g. " +
-                     joined(kPoseColumns, ","));
+    throw StudyError("{}: no state (the header has times and covariances alone): add e.g. {}",
+                     place, joined(kPoseColumns, ","));
   }
   if (is_same_set(usual_names(state), kPoseColumns)) {
     return {StateKind::pose, kPoseColumns, {"x", "y", "heading"}, {"m", "m", "rad"}};
@@ -221,9 +224,10 @@ StateShape shape_of(const Names& state, const std::string& place) {
   if (has_all(state, pose_in_space_shape().columns)) return shape_with_pose_in_space(state, place);
   if (std::ranges::any_of(kQuaternionColumns,
                           [&](const std::string& q) { return has_name(state, q); })) {
-    throw StudyError(place + ": a quaternion, but not a pose in space (nothing else has one): " +
-                     "name the pose " + joined(pose_in_space_shape().columns, ",") +
-                     ", which other columns may follow");
+    throw StudyError(
+        "{}: a quaternion, but not a pose in space (nothing else has one): name the pose {}, which "
+        "other columns may follow",
+        place, joined(pose_in_space_shape().columns, ","));
   }
   StateShape shape;
   add_components(state, place, shape);
@@ -237,7 +241,7 @@ std::map<std::string, std::pair<std::size_t, std::size_t>> names_of_elements(
   const auto add = [&](const Names& components) {
     for (std::size_t i = 0; i < components.size(); ++i) {
       for (std::size_t j = 0; j < components.size(); ++j) {
-        elements[kCovariancePrefix + components[i] + "_" + components[j]] = {i, j};
+        elements[formatted("{}{}_{}", kCovariancePrefix, components[i], components[j])] = {i, j};
       }
     }
   };
@@ -264,12 +268,10 @@ void refuse_indices_out_of_order(const Names& header, std::size_t field, const S
     return;
   }
   if (state_in_header(header) == shape.columns) return;
-  throw StudyError(place + ": '" + header[field] +
-                   "' has indices, but the state has not the order " +
-                   joined(shape.components, ",") +
-                   " (so a component has no certain number): write the names of components, or "
-                   "the columns in the order " +
-                   joined(shape.columns, ","));
+  throw StudyError(
+      "{}: '{}' has indices, but the state has not the order {} (so a component has no certain "
+      "number): write the names of components, or the columns in the order {}",
+      place, header[field], joined(shape.components, ","), joined(shape.columns, ","));
 }
 
 std::vector<std::size_t> covariance_fields(const Names& header, const StateShape& shape,
@@ -281,18 +283,17 @@ std::vector<std::size_t> covariance_fields(const Names& header, const StateShape
     if (!header[f].starts_with(kCovariancePrefix)) continue;
     const auto element = elements.find(header[f]);
     if (element == elements.end()) {
-      throw StudyError(place + ": '" + excerpt(header[f]) +
-                       "' is no element of the covariance (its components are " +
-                       joined(shape.components) + ", or indices from 0): write cov_" +
-                       shape.components.front() + "_" + shape.components.back() + " or cov_0_" +
-                       std::to_string(d - 1));
+      throw StudyError(
+          "{}: '{}' is no element of the covariance (its components are {}, or indices from 0): "
+          "write cov_{}_{} or cov_0_{}",
+          place, excerpt(header[f]), joined(shape.components), shape.components.front(),
+          shape.components.back(), d - 1);
     }
     refuse_indices_out_of_order(header, f, shape, place);
     const auto [i, j] = element->second;
     if (found[i * d + j]) {
-      throw StudyError(place + ": '" + header[f] +
-                       "' is there by name and by index (which one is "
-                       "it?): remove one");
+      throw StudyError("{}: '{}' is there by name and by index (which one is it?): remove one",
+                       place, header[f]);
     }
     found[i * d + j] = f;
   }
@@ -301,9 +302,10 @@ std::vector<std::size_t> covariance_fields(const Names& header, const StateShape
     for (std::size_t j = 0; j < d; ++j) {
       const auto& field = found[i * d + j] ? found[i * d + j] : found[j * d + i];
       if (!field) {
-        throw StudyError(place + ": no cov_" + shape.components[i] + "_" + shape.components[j] +
-                         " (a verdict needs the whole covariance, or one triangle of it): add "
-                         "the column");
+        throw StudyError(
+            "{}: no cov_{}_{} (a verdict needs the whole covariance, or one triangle of it): add "
+            "the column",
+            place, shape.components[i], shape.components[j]);
       }
       fields.push_back(*field);
     }
@@ -321,17 +323,18 @@ std::vector<std::size_t> covariance_of_truth(Names columns, const StateShape& sh
     if (!name.starts_with(kCovariancePrefix)) continue;
     const bool has_index = name.find_first_of("0123456789") == kCovariancePrefix.size();
     if (has_index && !is_in_order) {
-      throw StudyError(place + ": '" + prefix + name + "' has indices, but the truth has not the " +
-                       "columns of the estimates in their order (so a component has no certain "
-                       "number): write names, e.g. " +
-                       prefix + kCovariancePrefix + shape.components.front() + "_" +
-                       shape.components.front());
+      throw StudyError(
+          "{}: '{}{}' has indices, but the truth has not the columns of the estimates in their "
+          "order (so a component has no certain number): write names, e.g. {}{}{}_{}",
+          place, prefix, name, prefix, kCovariancePrefix, shape.components.front(),
+          shape.components.front());
     }
     if (!elements.contains(name)) name.clear();  // of what is not estimated
   }
-  return covariance_fields(columns, shape,
-                           place + " (covariance of the truth" +
-                               (prefix.empty() ? "" : ", in columns " + prefix + "cov_A_B") + ")");
+  return covariance_fields(
+      columns, shape,
+      formatted("{} (covariance of the truth{})", place,
+                prefix.empty() ? "" : formatted(", in columns {}cov_A_B", prefix)));
 }
 
 /// Number of columns of a state that are the truth of another.
@@ -355,8 +358,10 @@ void normalise_quaternion(Eigen::VectorXd& state, const std::string& place) {
   auto quaternion = state.segment<4>(kQuaternionPlace);
   const double length = quaternion.norm();
   if (std::abs(length - 1.0) > kQuaternionPlaceSlack) {
-    throw StudyError(place + ": the quaternion has length " + to_text(length) +
-                     " (of a rotation it is 1): write qx, qy, qz, qw of a unit quaternion");
+    throw StudyError(
+        "{}: the quaternion has length {} (of a rotation it is 1): write qx, qy, qz, qw of a unit "
+        "quaternion",
+        place, to_text(length));
   }
   quaternion /= length;
 }
@@ -366,9 +371,10 @@ std::uint32_t checked_dof(double nis, double dof, const std::string& place) {
   if (nis >= 0.0 && dof >= 0.0 && dof <= kMostComponents && dof == std::floor(dof)) {
     return static_cast<std::uint32_t>(dof);
   }
-  throw StudyError(place + ": nis " + to_text(nis) + " with nis_dof " + to_text(dof) +
-                   " (a sum of squares and its number of components are needed): write 0 "
-                   "and 0 if nothing was observed");
+  throw StudyError(
+      "{}: nis {} with nis_dof {} (a sum of squares and its number of components are needed): "
+      "write 0 and 0 if nothing was observed",
+      place, to_text(nis), to_text(dof));
 }
 
 std::string name_of(StateKind kind) {
@@ -391,13 +397,16 @@ OwnTruth own_truth_in(const Names& header, const std::string& place) {
   const bool has_errors = std::ranges::any_of(
       state, [](const auto& column) { return column.starts_with(kErrorPrefix); });
   if (has_some && (!without.empty() || state.size() != columns_of_truth(header))) {
-    throw StudyError(place + ": some columns begin with " + kTruthPrefix +
-                     " (the truth of everything that is estimated is needed): the state is " +
-                     joined(state, ",") + ", so name each of them " + kTruthPrefix + "NAME too");
+    throw StudyError(
+        "{}: some columns begin with {} (the truth of everything that is estimated is needed): the "
+        "state is {}, so name each of them {}NAME too",
+        place, kTruthPrefix, joined(state, ","), kTruthPrefix);
   }
   if (has_errors) {
-    throw StudyError(place + ": some columns begin with " + kErrorPrefix + ", and others do not (" +
-                     "errors need no states beside them): give the errors of all, or of none");
+    throw StudyError(
+        "{}: some columns begin with {}, and others do not (errors need no states beside them): "
+        "give the errors of all, or of none",
+        place, kErrorPrefix);
   }
   return has_some ? OwnTruth::columns : OwnTruth::none;
 }
@@ -429,9 +438,10 @@ EstimateFields fields_of(const Names& header, const std::string& place) {
 
 EstimateFields estimate_fields(const Names& header, const std::string& place) {
   if (!has_name(header, kSensor)) return fields_of(header, place);
-  throw StudyError(place + ": '" + kSensor +
-                   "' names the sensor of an innovation (this file has estimates): give "
-                   "innovations in a file of their own");
+  throw StudyError(
+      "{}: '{}' names the sensor of an innovation (this file has estimates): give innovations in a "
+      "file of their own",
+      place, kSensor);
 }
 
 EstimateFields innovation_fields(const Names& header, const std::string& place) {
@@ -465,9 +475,10 @@ EstimateFields truth_fields(const Names& header, const StateShape& shape, const 
   for (const std::string& column : shape.columns) {
     fields.state.push_back(place_of_column(columns, column, shape.kind));
     if (fields.state.back() == header.size()) {
-      throw StudyError(place + ": no column " + prefix + column +
-                       " (the truth of everything that is estimated is needed): add it, or leave "
-                       "it out of the estimates");
+      throw StudyError(
+          "{}: no column {}{} (the truth of everything that is estimated is needed): add it, or "
+          "leave it out of the estimates",
+          place, prefix, column);
     }
   }
   if (with_covariance) fields.covariance = covariance_of_truth(columns, shape, place, prefix);
@@ -516,12 +527,12 @@ std::string likeness_to_pose(const StateShape& shape) {
     if (column.ends_with("_rad")) angles.push_back(column);
   }
   if (angles.empty()) return "";
-  const std::string columns = "it has " + joined(shape.columns, ",") + ", and a pose is ";
+  const std::string columns = formatted("it has {}, and a pose is ", joined(shape.columns, ","));
   if (angles.size() > 1 || shape.width() > kPoseColumns.size()) {
-    return columns + joined(kPoseColumns, ",") + " alone";
+    return formatted("{}{} alone", columns, joined(kPoseColumns, ","));
   }
-  return columns + joined(kPoseColumns, ",") + ": if it is a pose, rename " + angles.front() +
-         " to " + kHeadingColumn;
+  return formatted("{}{}: if it is a pose, rename {} to {}", columns, joined(kPoseColumns, ","),
+                   angles.front(), kHeadingColumn);
 }
 
 bool is_angle(const StateShape& shape, Eigen::Index k) {

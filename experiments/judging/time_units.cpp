@@ -2,6 +2,7 @@
 #include "experiments/judging/time_units.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "experiments/judging/scan_clock.hpp"
 #include "experiments/text/words.hpp"
 
@@ -36,7 +37,7 @@ double spacing_of(const std::vector<double>& times) {
 }
 
 std::string place_of_first(const StateRows& rows, const std::filesystem::path& path) {
-  return path.string() + ":" + std::to_string(rows.line.front());
+  return formatted("{}:{}", path, rows.line.front());
 }
 
 /// Whether most times have a truth of nearly the same time.
@@ -71,18 +72,20 @@ void require_seconds(const StateRows& rows, const std::filesystem::path& path) {
   if (unit == kUnits.end() && spacing <= kFarthestRows) return;
   const ClockUnit& likely = unit == kUnits.end() ? kUnits.front() : *unit;
   const std::string rows_apart =
-      spacing > 0.0 ? ", and rows are " + to_text(spacing) + " s apart" : "";
-  throw StudyError(place_of_first(rows, path) + ": time_s " + to_text(rows.time.front()) +
-                   " is not in s (it looks like " + likely.name + rows_apart +
-                   "): divide time_s by " + likely.factor +
-                   ", in this file and in others with its clock");
+      spacing > 0.0 ? formatted(", and rows are {} s apart", to_text(spacing)) : "";
+  throw StudyError(
+      "{}: time_s {} is not in s (it looks like {}{}): divide time_s by {}, in this file and in "
+      "others with its clock",
+      place_of_first(rows, path), to_text(rows.time.front()), likely.name, rows_apart,
+      likely.factor);
 }
 
 std::string note_on_times(const StateRows& rows, const std::filesystem::path& path) {
   const double spacing = spacing_of(rows.time);
   if (spacing < kFarRows) return "";
-  return place_of_first(rows, path) + ": rows are " + to_text(spacing) +
-         " s apart (they are judged so): if time_s is in us, divide it by 1e6";
+  return formatted(
+      "{}: rows are {} s apart (they are judged so): if time_s is in us, divide it by 1e6",
+      place_of_first(rows, path), to_text(spacing));
 }
 
 void require_same_time_unit(const StateRows& rows, const std::filesystem::path& estimates,
@@ -93,8 +96,9 @@ void require_same_time_unit(const StateRows& rows, const std::filesystem::path& 
     if (!is_truth && !is_factor(rows.time, 1.0 / unit.in_a_second, truth.time)) continue;
     const std::string &wrong = is_truth ? truths.string() : estimates.string(),
                       &right = is_truth ? estimates.string() : truths.string();
-    throw StudyError(wrong + ": times look like " + unit.name + " (they are " + unit.factor +
-                     " times those of " + right + "): divide its time_s by " + unit.factor);
+    throw StudyError(
+        "{}: times look like {} (they are {} times those of {}): divide its time_s by {}", wrong,
+        unit.name, unit.factor, right, unit.factor);
   }
 }
 

@@ -2,6 +2,7 @@
 #include "experiments/judging/truth_path.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "engine/numbers/angle.hpp"
 #include "experiments/judging/scan_clock.hpp"
 #include "experiments/text/words.hpp"
@@ -61,13 +62,12 @@ std::size_t TruthPath::row_near(double time, const std::string& estimate) const 
   const double mismatch = std::abs(rows_.time[row] - time);
   if (mismatch <= match_.tolerance) return row;
   const bool is_inside = rows_.time.front() < time && time < rows_.time.back();
-  throw StudyError(estimate + " has no truth in " + path_.string() + " (the nearest is " +
-                   to_text(mismatch) + " s away, --tolerance is " + to_text(match_.tolerance) +
-                   " s): " +
-                   (is_inside ? "give truths at the times of the estimates, or use --interpolate, "
-                                "or a larger --tolerance if times have few digits"
-                              : "leave out estimates outside of the truth, which --interpolate "
-                                "does, or use a larger --tolerance if times have few digits"));
+  throw StudyError("{} has no truth in {} (the nearest is {} s away, --tolerance is {} s): {}",
+                   estimate, path_, to_text(mismatch), to_text(match_.tolerance),
+                   is_inside ? "give truths at the times of the estimates, or use --interpolate, "
+                               "or a larger --tolerance if times have few digits"
+                             : "leave out estimates outside of the truth, which --interpolate "
+                               "does, or use a larger --tolerance if times have few digits");
 }
 
 /// The truth between the two rows around `time`; nullopt, counted in `use`, if there are none or
@@ -86,8 +86,7 @@ std::optional<TrueState> TruthPath::interpolated(double time, const std::string&
   const double from = rows_.time[right - 1], to = rows_.time[right];
   if (to - from > longest_gap_) {
     if (use.in_gaps++ == 0) {
-      use.first_gap =
-          path_.string() + " has no row from " + to_text(from) + " to " + to_text(to) + " s";
+      use.first_gap = formatted("{} has no row from {} to {} s", path_, to_text(from), to_text(to));
     }
     return std::nullopt;
   }
@@ -106,16 +105,17 @@ std::vector<std::optional<TrueState>> TruthPath::at(const StateRows& estimates,
   std::vector<std::optional<TrueState>> found;
   std::optional<std::size_t> used;
   for (const double time : estimates.time) {
-    const std::string estimate = path.string() + ": time " + to_text(time) + " s";
+    const std::string estimate = formatted("{}: time {} s", path, to_text(time));
     if (match_.interpolate) {
       found.push_back(interpolated(time, estimate, use));
       continue;
     }
     const std::size_t row = row_near(time, estimate);
     if (used == row) {
-      throw StudyError(estimate + " and the time before have the same row of the truth (" +
-                       path_.string() + ", " + to_text(rows_.time[row]) +
-                       " s): use --interpolate, or a smaller --tolerance");
+      throw StudyError(
+          "{} and the time before have the same row of the truth ({}, {} s): use --interpolate, or "
+          "a smaller --tolerance",
+          estimate, path_, to_text(rows_.time[row]));
     }
     used = row;
     const double mismatch = std::abs(rows_.time[row] - time);
@@ -127,26 +127,32 @@ std::vector<std::optional<TrueState>> TruthPath::at(const StateRows& estimates,
   }
   const bool has_any = std::ranges::any_of(found, [](const auto& one) { return one.has_value(); });
   if (has_any || found.empty()) return found;
-  throw StudyError(path.string() + ": no estimate has a truth in " + path_.string() + " (" +
-                   to_text(estimates.time.front()) + " to " + to_text(estimates.time.back()) +
-                   " s here, " + to_text(rows_.time.front()) + " to " + to_text(rows_.time.back()) +
-                   " s there): give both the same clock");
+  throw StudyError(
+      "{}: no estimate has a truth in {} ({} to {} s here, {} to {} s there): give both the same "
+      "clock",
+      path, path_, to_text(estimates.time.front()), to_text(estimates.time.back()),
+      to_text(rows_.time.front()), to_text(rows_.time.back()));
 }
 
 std::vector<std::string> TruthUse::notes() const {
   std::vector<std::string> all;
   if (largest_mismatch > kSameTime) {
-    all.push_back("truths were taken up to " + to_text(largest_mismatch) + " s beside their " +
-                  "estimates (" + of_mismatch + "): --interpolate takes them at their times");
+    all.push_back(
+        formatted("truths were taken up to {} s beside their estimates ({}): --interpolate takes "
+                  "them at their times",
+                  to_text(largest_mismatch), of_mismatch));
   }
   if (in_gaps > 0) {
-    all.push_back(std::to_string(in_gaps) +
-                  " estimates lie in gaps of the truth and are missing (" + first_gap +
-                  "): --longest-gap SECONDS sets what is interpolated");
+    all.push_back(
+        formatted("{} estimates lie in gaps of the truth and are missing ({}): --longest-gap "
+                  "SECONDS sets what is interpolated",
+                  in_gaps, first_gap));
   }
   if (longest_crossed > 0.0) {
-    all.push_back("the truth was interpolated across a gap of " + to_text(longest_crossed) +
-                  " s, far longer than usual: its own error there counts as the estimate's");
+    all.push_back(
+        formatted("the truth was interpolated across a gap of {} s, far longer than usual: its own "
+                  "error there counts as the estimate's",
+                  to_text(longest_crossed)));
   }
   if (interpolates_covariance) {
     all.push_back(
@@ -155,8 +161,9 @@ std::vector<std::string> TruthUse::notes() const {
                     "at the times of the estimates"));
   }
   if (outside > 0) {
-    all.push_back(std::to_string(outside) + " estimates lie before or after the truth and are " +
-                  "missing, the first in " + first_outside);
+    all.push_back(
+        formatted("{} estimates lie before or after the truth and are missing, the first in {}",
+                  outside, first_outside));
   }
   return all;
 }

@@ -3,6 +3,7 @@
 
 #include "analysis/study/frame.hpp"
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "experiments/files/files.hpp"
 #include "experiments/text/words.hpp"
 #include "experiments/worlds/world.hpp"
@@ -68,7 +69,7 @@ double limited(const CsvRows& rows, std::size_t field, const char* noun, double 
                const char* why) {
   const double value = rows.number(field, noun);
   if (std::abs(value) <= most) return value;
-  rows.refuse(std::string(noun) + " " + to_text(value) + " (" + why + "): correct it");
+  rows.refuse(formatted("{} {} ({}): correct it", noun, to_text(value), why));
 }
 
 double time_in(CsvRows& rows, CsvRows::Order order = CsvRows::Order::later) {
@@ -92,8 +93,8 @@ std::string fault_of(double value, Quantity quantity) {
   const Component& component = component_of(quantity);
   const bool is_too_near = quantity == Quantity::range && value <= 0.0;
   if (std::abs(value) <= component.most && !is_too_near) return {};
-  return std::string(component.name) + " " + to_text(value) + " (" +
-         (is_too_near ? "a detection is farther than 0 m" : component.limit) + ")";
+  return formatted("{} {} ({})", component.name, to_text(value),
+                   is_too_near ? "a detection is farther than 0 m" : component.limit);
 }
 
 double quantity_in(const CsvRows& rows, std::size_t field, Quantity quantity) {
@@ -112,8 +113,8 @@ void read_start(const fs::path& path, DriveLog& log) {
     log.start = {.x = place.x(), .y = place.y(), .heading = heading_in(rows, 3)};
     if (!rows.next()) return;
   }
-  throw StudyError(path.string() + ": " + (has_row ? "more than one row" : "no row") +
-                   " (a drive starts at one pose): write one row");
+  throw StudyError("{}: {} (a drive starts at one pose): write one row", path,
+                   has_row ? "more than one row" : "no row");
 }
 
 /// Reads the odometry. Its columns determine the components of the controls.
@@ -140,9 +141,10 @@ std::optional<std::int32_t> identity_in(const CsvRows& rows, std::size_t column)
   if (rows.field(column).empty()) return std::nullopt;
   const auto identity = to_count(rows.field(column));
   if (identity && *identity < kMostIdentities) return static_cast<std::int32_t>(*identity);
-  rows.refuse("'" + excerpt(rows.field(column)) +
-              "' is no identity (a whole number from 0 to 999999): number the landmarks from 0, or "
-              "leave the field empty for clutter");
+  rows.refuse(
+      formatted("'{}' is no identity (a whole number from 0 to 999999): number the landmarks from "
+                "0, or leave the field empty for clutter",
+                excerpt(rows.field(column))));
 }
 
 Detection detection_in(const CsvRows& rows, std::span<const Quantity> components, bool identified) {
@@ -160,10 +162,11 @@ void check_identity(const CsvRows& rows, std::int32_t identity, std::size_t know
   if (identity < 0) return;
   const std::string name = "identity " + std::to_string(identity);
   if (!seen.insert(identity).second)
-    rows.refuse(name + " twice (a scan sees a landmark once): correct one of the two" + kOrRepair);
+    rows.refuse(formatted("{} twice (a scan sees a landmark once): correct one of the two{}", name,
+                          kOrRepair));
   if (known == 0 || static_cast<std::size_t>(identity) < known) return;
-  rows.refuse(name + " of " + std::to_string(known) +
-              " landmarks (they count from 0): give all landmarks, or none");
+  rows.refuse(formatted("{} of {} landmarks (they count from 0): give all landmarks, or none", name,
+                        known));
 }
 
 /// Returns whether all fields behind the time are empty.
@@ -200,8 +203,9 @@ void read_scans(const fs::path& path, DriveLog& log) {
     const bool nothing = is_empty_scan(rows, fields);
     const bool again = !scans.empty() && scans.back().time == time;
     if (again && (nothing || scans.back().detections.empty())) {
-      rows.refuse("a scan at " + to_text(time) +
-                  " s that saw nothing has other rows (it is one row): delete one of them");
+      rows.refuse(formatted(
+          "a scan at {} s that saw nothing has other rows (it is one row): delete one of them",
+          to_text(time)));
     }
     if (!again) {
       scans.push_back({time, {}});
@@ -233,9 +237,10 @@ std::vector<Eigen::Vector2d> read_landmarks(const fs::path& path) {
   std::vector<Eigen::Vector2d> places;
   for (const auto& [identity, place] : landmarks) {
     if (identity != static_cast<std::int32_t>(places.size())) {
-      throw StudyError(path.string() + ": no landmark of identity " +
-                       std::to_string(places.size()) +
-                       ", or two of the one before (they count from 0): number each row once");
+      throw StudyError(
+          "{}: no landmark of identity {}, or two of the one before (they count from 0): number "
+          "each row once",
+          path, places.size());
     }
     places.push_back(place);
   }
@@ -251,8 +256,9 @@ std::string reference_in(const fs::path& file) {
   const std::string prefix = kLeadingReference + "_";
   if (stem.starts_with(prefix) && stem != prefix) return stem.substr(prefix.size());
   if (!stem.starts_with("reference") && !stem.starts_with("landmark")) return {};
-  throw StudyError(file.string() + ": no file of a log (known: reference.csv, " +
-                   "reference_NAME.csv, landmarks.csv): rename it");
+  throw StudyError(
+      "{}: no file of a log (known: reference.csv, reference_NAME.csv, landmarks.csv): rename it",
+      file);
 }
 
 bool is_name(const std::string& name) {
@@ -269,12 +275,12 @@ std::vector<ReferencePath> read_references(const fs::path& folder) {
     const std::string name = reference_in(entry.path());
     if (name.empty()) continue;
     if (!is_name(name)) {
-      throw StudyError(entry.path().string() + ": '" + excerpt(name) +
-                       "' is no name of a reference (letters, digits, _ and -): rename it");
+      throw StudyError("{}: '{}' is no name of a reference (letters, digits, _ and -): rename it",
+                       entry.path(), excerpt(name));
     }
     if (!names.insert(name).second) {
-      throw StudyError(folder.string() + ": two references called " + name +
-                       " (each has a name of its own): rename one");
+      throw StudyError("{}: two references called {} (each has a name of its own): rename one",
+                       folder, name);
     }
     references.push_back(read_reference_csv(entry.path(), name));
   }
@@ -293,19 +299,22 @@ void check_times(const DriveLog& log, const fs::path& folder) {
   const double last_move = log.odometry.back().time;
   const std::string start = to_text(log.start_time) + " s";
   if (first_scan < log.start_time) {
-    throw StudyError(scans + ": the first is at " + to_text(first_scan) +
-                     " s, before the start at " + start +
-                     " (its pose is unknown): give an earlier start, or leave it out");
+    throw StudyError(
+        "{}: the first is at {} s, before the start at {} (its pose is unknown): give an earlier "
+        "start, or leave it out",
+        scans, to_text(first_scan), start);
   }
   if (last_move < log.start_time) {
-    throw StudyError(odometry + ": all of it is before the start at " + start +
-                     " (the vehicle would never move): correct the time of the start");
+    throw StudyError(
+        "{}: all of it is before the start at {} (the vehicle would never move): correct the time "
+        "of the start",
+        odometry, start);
   }
   if (last_scan <= last_move + kLongestHold) return;
-  throw StudyError(odometry + ": the last record is at " + to_text(last_move) +
-                   " s, the last scan at " + to_text(last_scan) +
-                   " s (the motion in between is unknown; was the file cut short?): "
-                   "take the whole file, or leave out the scans");
+  throw StudyError(
+      "{}: the last record is at {} s, the last scan at {} s (the motion in between is unknown; "
+      "was the file cut short?): take the whole file, or leave out the scans",
+      odometry, to_text(last_move), to_text(last_scan));
 }
 
 }  // namespace
@@ -351,8 +360,8 @@ void require_readable(std::span<const double> values, std::span<const Quantity> 
   for (std::size_t i = 0; i < quantities.size(); ++i) {
     const std::string fault = fault_of(values[i], quantities[i]);
     if (fault.empty()) continue;
-    throw StudyError(file.string() + ": " + fault +
-                     ", so that the log could not be read: give the study less noise");
+    throw StudyError("{}: {}, so that the log could not be read: give the study less noise", file,
+                     fault);
   }
 }
 
@@ -441,9 +450,10 @@ Eigen::Matrix3d covariance_of_sigmas(const CsvRows& rows, std::size_t first, int
     const std::size_t field = first + static_cast<std::size_t>(i);
     const double sigma = rows.number(field, "standard deviation");
     if (!(sigma >= kLeastDeviation)) {
-      rows.refuse("standard deviation " + std::string(rows.field(field)) +
-                  " (every fix has an error, at least 1e-9 m or rad): correct it, or leave the "
-                  "sigmas out if they are unknown");
+      rows.refuse(
+          formatted("standard deviation {} (every fix has an error, at least 1e-9 m or rad): "
+                    "correct it, or leave the sigmas out if they are unknown",
+                    rows.field(field)));
     }
     covariance(i, i) = sigma * sigma;
   }
@@ -482,9 +492,9 @@ void check_size(const CsvRows& rows, const Eigen::Matrix3d& covariance, int dime
   for (int i = 0; i < dimension; ++i) {
     const double sigma = std::sqrt(covariance(i, i));
     if (sigma <= (i == 2 ? kPi : kFarthestCoordinate)) continue;
-    rows.refuse("standard deviation " + to_text(sigma) + " of the " +
-                (i == 2 ? "heading (radians, at most pi)" : "position (metres, at most 1e6)") +
-                ": correct it");
+    rows.refuse(
+        formatted("standard deviation {} of the {}: correct it", to_text(sigma),
+                  i == 2 ? "heading (radians, at most pi)" : "position (metres, at most 1e6)"));
   }
 }
 

@@ -2,6 +2,7 @@
 #include "experiments/recordings/recorded_drive.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "engine/records/fingerprint.hpp"
 #include "experiments/recordings/log_csv.hpp"
 #include "experiments/text/words.hpp"
@@ -93,10 +94,11 @@ std::size_t end_of_name(std::string_view list, const std::vector<fs::path>& fold
 
 fs::path find_recording(const std::string& path, const std::vector<fs::path>& folders) {
   if (const auto folder = recording_at(path, folders)) return *folder;
-  throw StudyError("no folder '" + path +
-                   "' (looked beside the study, here, and in $MONTECARTA_DATA; recorded drives are "
-                   "not part of montecarta): correct scenario.path, or set MONTECARTA_DATA to the "
-                   "folder that holds it");
+  throw StudyError(
+      "no folder '{}' (looked beside the study, here, and in $MONTECARTA_DATA; recorded drives are "
+      "not part of montecarta): correct scenario.path, or set MONTECARTA_DATA to the folder that "
+      "holds it",
+      path);
 }
 
 std::vector<std::string> recordings_in(const std::string& list,
@@ -135,8 +137,9 @@ namespace {
 std::string references_in_words(const Itinerary& itinerary) {
   std::vector<std::string> all;
   for (const ReferencePath& path : itinerary.references) {
-    all.push_back(path.name + (path.heading.empty() ? " without" : " with") + " headings, " +
-                  (path.covariance.empty() ? "without" : "with") + " errors of its own");
+    all.push_back(formatted("{}{} headings, {} errors of its own", path.name,
+                            path.heading.empty() ? " without" : " with",
+                            path.covariance.empty() ? "without" : "with"));
   }
   return joined(all, "; ");
 }
@@ -144,10 +147,10 @@ std::string references_in_words(const Itinerary& itinerary) {
 void require_alike(const Itinerary& first, const Itinerary& other, std::size_t number) {
   const std::string drive = "drive " + std::to_string(number + 1);
   if (references_in_words(first) != references_in_words(other)) {
-    throw StudyError(drive + " has the references " + references_in_words(other) +
-                     " (the first one has " + references_in_words(first) +
-                     ", and one verdict is by one reference): give all drives files of the same "
-                     "names and columns, or name one by scenario.reference");
+    throw StudyError(
+        "{} has the references {} (the first one has {}, and one verdict is by one reference): "
+        "give all drives files of the same names and columns, or name one by scenario.reference",
+        drive, references_in_words(other), references_in_words(first));
   }
   if (first.landmarks == other.landmarks) return;
   throw StudyError(drive +

@@ -2,6 +2,7 @@
 #include "experiments/study/cell_spec.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "experiments/study/vehicle_and_sensor.hpp"
 #include "experiments/text/words.hpp"
 
@@ -29,10 +30,12 @@ Parameter known_option(const FilterKind& filter, const std::string& key, const s
     known.push_back(option.key);
   }
   const std::string section = sections_with(key);
-  throw StudyError(place + ": " + filter.name + " has no option '" + key +
-                   (section.empty()
-                        ? "' (nothing would come of it): " + nearest_spelling(key, known)
-                        : "' (it is no part of a cell): write it under " + section));
+  if (!section.empty()) {
+    throw StudyError("{}: {} has no option '{}' (it is no part of a cell): write it under {}",
+                     place, filter.name, key, section);
+  }
+  throw StudyError("{}: {} has no option '{}' (nothing would come of it): {}", place, filter.name,
+                   key, nearest_spelling(key, known));
 }
 
 constexpr std::size_t kLongestLabel = 200;
@@ -42,21 +45,24 @@ std::string checked_label(const std::string& label, const std::string& place) {
   const bool good = !label.empty() && std::isalpha(static_cast<unsigned char>(label[0])) != 0 &&
                     std::ranges::all_of(label, allowed);
   if (good && label.size() <= kLongestLabel) return label;
-  throw StudyError(place + ": label = '" + label + "' (a label is a letter, then letters, digits " +
-                   "and _, at most " + std::to_string(kLongestLabel) + "): choose another");
+  throw StudyError(
+      "{}: label = '{}' (a label is a letter, then letters, digits and _, at most {}): choose "
+      "another",
+      place, label, kLongestLabel);
 }
 
 /// Parses one word of a cell line behind the name of the filter.
 void take_word(const std::string& word, const FilterKind& filter, CellSpec& cell, Lists& lists) {
   const std::size_t equals = word.find('=');
   if (equals == std::string::npos) {
-    throw StudyError(cell.place + ": stray text '" + word +
-                     "' (a cell is FILTER key=value ..., without spaces around "
-                     "= and ,): write it so");
+    throw StudyError(
+        "{}: stray text '{}' (a cell is FILTER key=value ..., without spaces around = and ,): "
+        "write it so",
+        cell.place, word);
   }
   const std::string key = word.substr(0, equals);
   if (lists.contains(key) || (key == "label" && !cell.label.empty())) {
-    throw StudyError(cell.place + ": " + key + " is given twice: remove one of the two");
+    throw StudyError("{}: {} is given twice: remove one of the two", cell.place, key);
   }
   if (key == "label") {
     cell.label = checked_label(word.substr(equals + 1), cell.place);
@@ -108,23 +114,23 @@ std::vector<CellSpec> read_line(const IniEntry& entry, std::span<const FilterKin
   const std::vector<std::string> words =
       at_place(entry.place, [&] { return quoted_words(entry.value); });
   if (words.empty()) {
-    throw StudyError(entry.place +
-                     ": cell names no filter (see montecarta list filters): write e.g. cell = " +
-                     filters.front().name);
+    throw StudyError("{}: cell names no filter (see montecarta list filters): write e.g. cell = {}",
+                     entry.place, filters.front().name);
   }
-  CellSpec line{.label = {},
-                .filter = &item_called(words[0], filters, &FilterKind::name,
-                                       entry.place + ": unknown filter '" + words[0] +
-                                           "' (see montecarta list filters)"),
-                .options = {},
-                .distinction = {},
-                .place = entry.place};
+  CellSpec line{
+      .label = {},
+      .filter = &item_called(words[0], filters, &FilterKind::name,
+                             formatted("{}: unknown filter '{}' (see montecarta list filters)",
+                                       entry.place, words[0])),
+      .options = {},
+      .distinction = {},
+      .place = entry.place};
   Lists lists;
   for (std::size_t i = 1; i < words.size(); ++i) take_word(words[i], *line.filter, line, lists);
   std::vector<CellSpec> cells = combinations(line, lists, controls_are_measured);
   if (!line.label.empty() && cells.size() > 1) {
-    throw StudyError(entry.place + ": one label for " + std::to_string(cells.size()) +
-                     " cells (labels are unique): remove label or the lists");
+    throw StudyError("{}: one label for {} cells (labels are unique): remove label or the lists",
+                     entry.place, cells.size());
   }
   return cells;
 }
@@ -162,11 +168,11 @@ void describe(const std::vector<CellSpec>& cells, const CellSpec& cell, std::str
     const auto& [key, value] = cell.options[i];
     const bool is_mismatch = i >= cell.filter->options.size(), particles = key == "particles";
     if (!is_mismatch && !particles && !distinguishes(cells, cell, i)) continue;
-    label += particles ? "_m" + value : "_" + key + "_" + label_part(value);
+    label += particles ? "_m" + value : formatted("_{}_{}", key, label_part(value));
     distinction +=
-        (distinction.empty() ? "" : ", ") + (is_mismatch ? "believes " + key + " x " + value
+        (distinction.empty() ? "" : ", ") + (is_mismatch ? formatted("believes {} x {}", key, value)
                                              : particles ? value + " particles"
-                                                         : key + " " + value);
+                                                         : formatted("{} {}", key, value));
   }
 }
 
@@ -185,8 +191,9 @@ void refuse_equal_labels(const std::vector<CellSpec>& cells) {
   for (const CellSpec& cell : cells) {
     const auto [first, fresh] = places.try_emplace(cell.label, cell.place);
     if (fresh) continue;
-    throw StudyError(cell.place + ": cell " + cell.label + " is given twice (first at " +
-                     first->second + "): remove it, or change a setting or its label");
+    throw StudyError(
+        "{}: cell {} is given twice (first at {}): remove it, or change a setting or its label",
+        cell.place, cell.label, first->second);
   }
 }
 
@@ -213,33 +220,35 @@ void refuse_kind(const Settings& settings, const CellSpec& cell,
   const std::vector<std::string>& taken = cell.filter->sensors;
   const std::string& sensor = settings.text("belief", "sensor");
   if (taken.empty() || std::ranges::find(taken, sensor) != taken.end()) return;
-  throw StudyError(cell.place + ": " + cell.filter->name + " takes no sensor " + sensor +
-                   " (it takes " + joined(taken) + "): use one of " + filters_for(sensor, filters) +
-                   ", or another sensor in [scenario] or [belief]");
+  throw StudyError(
+      "{}: {} takes no sensor {} (it takes {}): use one of {}, or another sensor in [scenario] or "
+      "[belief]",
+      cell.place, cell.filter->name, sensor, joined(taken), filters_for(sensor, filters));
 }
 
 void refuse_mounting(const CellSpec& cell, const Sensor& sensor,
                      std::span<const FilterKind> filters) {
   if (takes_mountings(*cell.filter) || sensor.mounting.is_none()) return;
-  throw StudyError(cell.place + ": " + cell.filter->name +
-                   " takes no sensor that is mounted elsewhere than at the pose (mount_forward, "
-                   "mount_left, mount_turn_deg): set these to 0, or use one of " +
-                   filters_for(name_of(sensor), filters, SensorPlace::elsewhere));
+  throw StudyError(
+      "{}: {} takes no sensor that is mounted elsewhere than at the pose (mount_forward, "
+      "mount_left, mount_turn_deg): set these to 0, or use one of {}",
+      cell.place, cell.filter->name, filters_for(name_of(sensor), filters, SensorPlace::elsewhere));
 }
 
 void refuse_association(const Settings& settings, const CellSpec& cell, const Sensor& sensor) {
   if (settings.text("association", "kind") == "known") return;
   const bool takes_listed_sensors = !cell.filter->sensors.empty();
   if (takes_listed_sensors && !std::holds_alternative<RangeBearingSensor>(sensor.kind)) {
-    throw StudyError(settings.place("association", "kind") + ": association.kind = nearest with " +
-                     name_of(sensor) + " (" + cell.filter->name +
-                     " takes it where identities are known): set association.kind = known");
+    throw StudyError(
+        "{}: association.kind = nearest with {} ({} takes it where identities are known): set "
+        "association.kind = known",
+        settings.place("association", "kind"), name_of(sensor), cell.filter->name);
   }
   if (!cell.filter->delays_initialisation || fixes_landmark(sensor)) return;
-  throw StudyError(settings.place("association", "kind") + ": association.kind = nearest with " +
-                   name_of(sensor) +
-                   " (one detection does not determine the position of a landmark, so that " +
-                   cell.filter->name + " cannot associate it): set association.kind = known");
+  throw StudyError(
+      "{}: association.kind = nearest with {} (one detection does not determine the position of a "
+      "landmark, so that {} cannot associate it): set association.kind = known",
+      settings.place("association", "kind"), name_of(sensor), cell.filter->name);
 }
 
 [[noreturn]] void refuse_key_among_cells(const IniEntry& entry) {
@@ -295,12 +304,12 @@ std::string filters_that(std::span<const FilterKind> filters, bool FilterKind::*
 }
 
 std::string cell_line(const CellSpec& cell) {
-  std::string line = cell.filter->name + " label=" + cell.label;
+  std::string line = formatted("{} label={}", cell.filter->name, cell.label);
   for (std::size_t i = 0; i < cell.options.size(); ++i) {
     const auto& [key, value] = cell.options[i];
     const std::vector<Parameter>& own = cell.filter->options;
     const bool is_text = i < own.size() && own[i].kind == Parameter::Kind::text;
-    line += " " + key + "=" + (is_text ? in_quotes(value) : value);
+    line += formatted(" {}={}", key, is_text ? in_quotes(value) : value);
   }
   return line;
 }

@@ -4,6 +4,7 @@
 #include "analysis/study/cell_sums.hpp"
 #include "analysis/study/study_analysis.hpp"
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "engine/records/result_file.hpp"
 #include "engine/runs/monte_carlo.hpp"
 #include "engine/text/number_text.hpp"
@@ -19,12 +20,14 @@ constexpr const char* kProcessorTime = "cpu_seconds";
 
 const Score& score_called(const std::string& name, const std::string& place) {
   if (name == kProcessorTime) {
-    throw StudyError(place + ": until = " + name +
-                     " < ... (processor time differs from run to run, and results must not depend "
-                     "on it): choose another metric");
+    throw StudyError(
+        "{}: until = {} < ... (processor time differs from run to run, and results must not depend "
+        "on it): choose another metric",
+        place, name);
   }
-  return item_called(name, all_scores(), &Score::name,
-                     place + ": until = " + name + " < ... (runs have no number of that name)");
+  return item_called(
+      name, all_scores(), &Score::name,
+      formatted("{}: until = {} < ... (runs have no number of that name)", place, name));
 }
 
 /// Returns whether the verdict of a cell is known after `runs` runs: it is refused, or consistent.
@@ -53,21 +56,21 @@ EnoughRuns enough_runs(const StoppingRule& rule, const std::string& place) {
 }
 
 std::string in_words(const StoppingRule& rule, std::uint64_t runs) {
-  const std::string rounds = "a cell stops after " + std::to_string(kFirstRound) + ", " +
-                             std::to_string(2 * kFirstRound) + ", " +
-                             std::to_string(4 * kFirstRound) + ", ... runs when ";
+  const std::string rounds = formatted("a cell stops after {}, {}, {}, ... runs when ", kFirstRound,
+                                       2 * kFirstRound, 4 * kFirstRound);
   if (!rule.metric) {
-    return rounds + "its verdict is known, by intervals widened for up to " +
-           std::to_string(rounds_of(runs).size()) + " interim analyses, \"consistent\" after " +
-           std::to_string(std::min(rule.least_runs, runs)) + " runs at the earliest, after " +
-           std::to_string(runs) + " runs in any case; failed runs do not count";
+    return formatted(
+        "{}its verdict is known, by intervals widened for up to {} interim analyses, "
+        "\"consistent\" after {} runs at the earliest, after {} runs in any case; failed runs do "
+        "not count",
+        rounds, rounds_of(runs).size(), std::min(rule.least_runs, runs), runs);
   }
   const std::string units = score_called(*rule.metric, "study.until").units;
-  return rounds + "the " + level_text(StoppingRule::kLevel) + " interval of its mean " +
-         *rule.metric + " is within +- " + to_text(rule.half_width) +
-         (units == "1" ? "" : " " + units) + ", after " + std::to_string(runs) +
-         " runs in any case; failed runs do not count, and values with a heavy tail are never "
-         "precise";
+  return formatted(
+      "{}the {} interval of its mean {} is within +- {}{}, after {} runs in any case; failed runs "
+      "do not count, and values with a heavy tail are never precise",
+      rounds, level_text(StoppingRule::kLevel), *rule.metric, to_text(rule.half_width),
+      units == "1" ? "" : " " + units, runs);
 }
 
 }  // namespace montecarta::experiments

@@ -22,9 +22,10 @@ std::uint32_t scans_per_fix(const Settings& settings) {
   const double whole = std::round(ratio);
   if (whole >= 1.0 && std::abs(ratio - whole) <= 1e-9 * whole)
     return static_cast<std::uint32_t>(whole);
-  throw StudyError(settings.place("scenario", "fix_rate") +
-                   ": fix_rate does not divide scan_rate (" + to_text(ratio) +
-                   " scans a fix): choose rates whose ratio is a whole number");
+  throw StudyError(
+      "{}: fix_rate does not divide scan_rate ({} scans a fix): choose rates whose ratio is a "
+      "whole number",
+      settings.place("scenario", "fix_rate"), to_text(ratio));
 }
 
 std::optional<double> believed_sigma_fix(const Settings& settings) {
@@ -37,11 +38,10 @@ void refuse_fixes(const Settings& settings, std::span<const CellSpec> cells,
   if (!has_fixes(settings)) return;
   for (const CellSpec& cell : cells) {
     if (cell.filter->takes_fixes) continue;
-    throw StudyError(cell.place + ": " + cell.filter->name +
-                     " with scenario.fixes = position (it takes detections of landmarks only): "
-                     "use one of " +
-                     filters_that(filters, &FilterKind::takes_fixes) +
-                     ", or set scenario.fixes = none");
+    throw StudyError(
+        "{}: {} with scenario.fixes = position (it takes detections of landmarks only): use one of "
+        "{}, or set scenario.fixes = none",
+        cell.place, cell.filter->name, filters_that(filters, &FilterKind::takes_fixes));
   }
 }
 

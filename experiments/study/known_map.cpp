@@ -15,11 +15,10 @@ namespace {
 void refuse_deviations(const Settings& settings) {
   for (const char* key : {"map_sigma_m", "start_sigma_m", "start_sigma_deg"}) {
     if (!settings.has("scenario", key) || settings.number("scenario", key) == 0.0) continue;
-    throw StudyError(settings.place("scenario", key) + ": scenario." + key + " = " +
-                     settings.text("scenario", key) +
-                     " with belief.map = estimated (a filter that estimates the map begins it at "
-                     "the start, which is exact by definition): set belief.map = known, or remove "
-                     "it");
+    throw StudyError(
+        "{}: scenario.{} = {} with belief.map = estimated (a filter that estimates the map begins "
+        "it at the start, which is exact by definition): set belief.map = known, or remove it",
+        settings.place("scenario", key), key, settings.text("scenario", key));
   }
 }
 
@@ -69,10 +68,10 @@ void refuse_known_map(const Settings& settings, std::span<const CellSpec> cells,
   }
   for (const CellSpec& cell : cells) {
     if (cell.filter->takes_prior) continue;
-    throw StudyError(cell.place + ": " + cell.filter->name + " with belief.map = known (" +
-                     reason_against_map(cell.filter->name) + "): use one of " +
-                     filters_that(filters, &FilterKind::takes_prior) +
-                     ", or set belief.map = estimated");
+    throw StudyError(
+        "{}: {} with belief.map = known ({}): use one of {}, or set belief.map = estimated",
+        cell.place, cell.filter->name, reason_against_map(cell.filter->name),
+        filters_that(filters, &FilterKind::takes_prior));
   }
 }
 

@@ -2,6 +2,7 @@
 #include "experiments/study/make_drives.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "experiments/drives/simulated_drive.hpp"
 #include "experiments/recordings/recorded_drive.hpp"
 #include "experiments/study/fixes.hpp"
@@ -25,16 +26,17 @@ std::uint32_t steps_per_scan(const Settings& settings) {
   const double whole = std::round(ratio);
   if (whole >= 1.0 && std::abs(ratio - whole) <= 1e-9 * whole)
     return static_cast<std::uint32_t>(whole);
-  throw StudyError(settings.place("scenario", "scan_rate") +
-                   ": scan_rate does not divide control_rate (" + to_text(ratio) +
-                   " steps a scan): choose rates whose ratio is a whole number");
+  throw StudyError(
+      "{}: scan_rate does not divide control_rate ({} steps a scan): choose rates whose ratio is a "
+      "whole number",
+      settings.place("scenario", "scan_rate"), to_text(ratio));
 }
 
 double min_range_of(const Settings& s) {
   const double least = s.number("scenario", "min_range");
   if (least < s.number("scenario", "max_range")) return least;
-  throw StudyError(s.place("scenario", "min_range") + ": min_range is not below max_range = " +
-                   s.text("scenario", "max_range") + ", so nothing is detected: lower it");
+  throw StudyError("{}: min_range is not below max_range = {}, so nothing is detected: lower it",
+                   s.place("scenario", "min_range"), s.text("scenario", "max_range"));
 }
 
 void take_pilot(const Settings& s, Scenario& scenario) {
@@ -47,8 +49,8 @@ void take_pilot(const Settings& s, Scenario& scenario) {
   scenario.constant_turn = s.has(in, "constant_steer_deg") ? s.radians(in, "constant_steer_deg")
                                                            : s.radians(in, "constant_yaw_rate_deg");
   if (scenario.drive_time * s.number(in, "scan_rate") >= 1.0) return;
-  throw StudyError(s.place(in, "drive_time") + ": drive_time = " + s.text(in, "drive_time") +
-                   " s ends before the first scan: enlarge it, or scan_rate");
+  throw StudyError("{}: drive_time = {} s ends before the first scan: enlarge it, or scan_rate",
+                   s.place(in, "drive_time"), s.text(in, "drive_time"));
 }
 
 Scenario scenario_of(const Settings& s) {
@@ -106,11 +108,10 @@ bool has_unidentified(const DriveLog& log) {
 void refuse_early_scans(const Settings& s, const DriveLog& log) {
   const double most = log.scans.front().time - log.start_time;
   if (s.number("scenario", "scan_delay") <= most) return;
-  throw StudyError(s.place("scenario", "scan_delay") +
-                   ": scan_delay = " + s.text("scenario", "scan_delay") +
-                   " puts the first scan before the start of the drive (its pose was "
-                   "unknown then): at most " +
-                   to_text(most) + " s");
+  throw StudyError(
+      "{}: scan_delay = {} puts the first scan before the start of the drive (its pose was unknown "
+      "then): at most {} s",
+      s.place("scenario", "scan_delay"), s.text("scenario", "scan_delay"), to_text(most));
 }
 
 /// Refuses steering for which the model has no solution, because the measured wheel hardly moves.
@@ -120,10 +121,9 @@ void refuse_impossible_steering(const Settings& s, const DriveLog& log) {
     const Control& control = log.odometry[i].control;
     if (is_beyond_model(vehicle, control)) {
       throw StudyError(
-          s.place("belief", "wheel_left") + ": odometry record " + std::to_string(i + 1) +
-          " steers by " + to_text(control[1]) +
-          " rad (the vehicle of [belief] then turns about its measured wheel): correct "
-          "the log, or wheelbase and wheel_left");
+          "{}: odometry record {} steers by {} rad (the vehicle of [belief] then turns about its "
+          "measured wheel): correct the log, or wheelbase and wheel_left",
+          s.place("belief", "wheel_left"), i + 1, to_text(control[1]));
     }
   }
 }
@@ -140,19 +140,20 @@ void refuse_other_controls(const Settings& s, std::span<const Quantity> driven) 
   const std::string given = names_of(driven);
   const std::string believed = names_of(controls_of(vehicle_of(s, "belief")));
   if (given == believed) return;
-  throw StudyError(s.place("belief", "vehicle") +
-                   ": belief.vehicle = " + s.text("belief", "vehicle") + " is controlled by " +
-                   believed + " (the drive has " + given +
-                   "): give belief.vehicle one that is controlled by these");
+  throw StudyError(
+      "{}: belief.vehicle = {} is controlled by {} (the drive has {}): give belief.vehicle one "
+      "that is controlled by these",
+      s.place("belief", "vehicle"), s.text("belief", "vehicle"), believed, given);
 }
 
 /// Throws StudyError unless the assumed sensor has the components of the detections.
 void refuse_other_detections(const Settings& s, std::span<const Quantity> seen) {
   const std::span<const Quantity> believed = components_of(sensor_of(s, "belief"));
   if (std::ranges::equal(seen, believed)) return;
-  throw StudyError(s.place("belief", "sensor") + ": belief.sensor = " + s.text("belief", "sensor") +
-                   " has other detections than the drive (nothing could be compared): set "
-                   "belief.sensor to the sensor of the drive");
+  throw StudyError(
+      "{}: belief.sensor = {} has other detections than the drive (nothing could be compared): set "
+      "belief.sensor to the sensor of the drive",
+      s.place("belief", "sensor"), s.text("belief", "sensor"));
 }
 
 /// The log with only the reference that the study names, if it names one.
@@ -178,7 +179,7 @@ std::shared_ptr<const DriveSource> several_drives_of(const Study& study) {
   const std::string& place = study.settings.place("scenario", "path");
   std::vector<RecordedDrive> drives;
   for (std::size_t k = 0; k < study.logs.size(); ++k) {
-    drives.push_back(at_place(place + ": drive " + std::to_string(k + 1),
+    drives.push_back(at_place(formatted("{}: drive {}", place, k + 1),
                               [&] { return drive_of(study.settings, *study.logs[k]); }));
   }
   return at_place(place, [&] { return std::make_shared<SeveralDrives>(std::move(drives)); });

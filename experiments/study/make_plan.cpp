@@ -2,6 +2,7 @@
 #include "experiments/study/make_plan.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "engine/random/stream.hpp"
 #include "engine/records/columns.hpp"
 #include "experiments/study/enough_runs.hpp"
@@ -104,7 +105,7 @@ std::function<std::unique_ptr<SlamFilter>()> maker_of(const CellSpec& spec,
   if (!starts_program(*spec.filter)) return make;
   if (programs == ExternalPrograms::refused) {
     return [label = spec.label]() -> std::unique_ptr<SlamFilter> {
-      throw StudyError("cell " + label + " is an external program that may not be started");
+      throw StudyError("cell {} is an external program that may not be started", label);
     };
   }
   at_place(spec.place, make);
@@ -158,7 +159,7 @@ std::vector<std::pair<std::string, std::string>> scenario_facts(const Settings& 
   auto facts = stated_settings(settings, "scenario");
   for (const char* section : {"belief", "association"}) {
     for (const auto& [key, value] : stated_settings(settings, section))
-      facts.emplace_back(std::string(section) + "." + key, value);
+      facts.emplace_back(formatted("{}.{}", section, key), value);
   }
   return facts;
 }
@@ -166,7 +167,7 @@ std::vector<std::pair<std::string, std::string>> scenario_facts(const Settings& 
 /// Throws StudyError if a column is to be stored to which there is an objection.
 void refuse_column(const Study& study, const std::string& column, const std::string& objection) {
   if (objection.empty()) return;
-  throw StudyError(study.settings.place("record", "columns") + ": " + column + " " + objection);
+  throw StudyError("{}: {} {}", study.settings.place("record", "columns"), column, objection);
 }
 
 /// Throws StudyError if cells stop by their verdict but cannot have one.
@@ -174,7 +175,7 @@ void require_verdict(const Study& study) {
   if (!study.until || study.until->metric) return;
   const Settings& settings = study.settings;
   const std::string problem =
-      settings.place("study", "until") + ": until = " + text_of(*study.until);
+      formatted("{}: until = {}", settings.place("study", "until"), text_of(*study.until));
   if (settings.scenario_kind() != "simulated") {
     throw StudyError(problem +
                      " and a recorded drive (its true path is unknown, so that no verdict ever "
@@ -191,8 +192,9 @@ void require_verdict(const Study& study) {
 void refuse_judging_from(const Study& study, const Itinerary& itinerary) {
   const double from = study.settings.number("study", "judge_from");
   if (from == 0.0) return;
-  const std::string problem = study.settings.place("study", "judge_from") +
-                              ": judge_from = " + study.settings.text("study", "judge_from") + " ";
+  const std::string problem =
+      formatted("{}: judge_from = {} ", study.settings.place("study", "judge_from"),
+                study.settings.text("study", "judge_from"));
   if (!study.logs.empty()) {
     throw StudyError(problem +
                      "and a recorded drive (it is judged at the fixes of its references): take "
@@ -200,17 +202,18 @@ void refuse_judging_from(const Study& study, const Itinerary& itinerary) {
   }
   if (first_judged_scan(study, itinerary) < itinerary.scans()) return;
   const double last = itinerary.step_time.at(itinerary.scan_step.back());
-  throw StudyError(problem + "(s; the last scan is at " + to_text(last) +
-                   " s, so that nothing would be judged): give an earlier time");
+  throw StudyError(
+      "{}(s; the last scan is at {} s, so that nothing would be judged): give an earlier time",
+      problem, to_text(last));
 }
 
 /// Refuses to run a part of the runs if the stopping rule needs all first runs of a cell.
 void refuse_part(const Study& study) {
   if (!study.until->metric) return;
-  throw StudyError(study.settings.place("study", "until") + ": until = " + text_of(*study.until) +
-                   " and only part of the runs (a part cannot decide when all runs are "
-                   "enough): run the whole study in one piece, or add --set study.until= to make "
-                   "all runs");
+  throw StudyError(
+      "{}: until = {} and only part of the runs (a part cannot decide when all runs are enough): "
+      "run the whole study in one piece, or add --set study.until= to make all runs",
+      study.settings.place("study", "until"), text_of(*study.until));
 }
 
 }  // namespace
@@ -220,9 +223,10 @@ RunRange parse_run_range(const std::string& text, std::uint64_t runs) {
   const auto first = parts.front().empty() ? 0 : to_count(parts.front());
   const auto last = parts.back().empty() ? runs : to_count(parts.back());
   if (parts.size() == 2 && first && last && *first < *last && *last <= runs) return {*first, *last};
-  throw StudyError("--runs " + text +
-                   ": no range of this study's runs (A:B means A, ..., B-1 out of 0 to " +
-                   std::to_string(runs - 1) + "): give e.g. --runs 0:" + std::to_string(runs));
+  throw StudyError(
+      "--runs {}: no range of this study's runs (A:B means A, ..., B-1 out of 0 to {}): give e.g. "
+      "--runs 0:{}",
+      text, runs - 1, runs);
 }
 
 RunRange parse_shard(const std::string& text, std::uint64_t runs, std::uint64_t runs_of_unit) {
@@ -234,11 +238,11 @@ RunRange parse_shard(const std::string& text, std::uint64_t runs, std::uint64_t 
     return {*index * units / *count * runs_of_unit,
             std::min((*index + 1) * units / *count * runs_of_unit, runs)};
   }
-  throw StudyError("--shard " + text +
-                   ": no shard of this study (I/N means part I, from 0 to N-1, of N; at most " +
-                   std::to_string(units) + " parts, one " +
-                   (runs_of_unit == 1 ? "a run" : "for " + std::to_string(runs_of_unit) + " runs") +
-                   "): give e.g. --shard 0/" + std::to_string(units < 4 ? units : 4));
+  throw StudyError(
+      "--shard {}: no shard of this study (I/N means part I, from 0 to N-1, of N; at most {} "
+      "parts, one {}): give e.g. --shard 0/{}",
+      text, units, runs_of_unit == 1 ? "a run" : formatted("for {} runs", runs_of_unit),
+      units < 4 ? units : 4);
 }
 
 std::string objection_to_joint(const Study& study) {
@@ -304,15 +308,15 @@ void require_summable(const Study& study, const std::optional<RunRange>& range) 
     throw StudyError(place + "of a recorded drive (its runs are judged one by one): take sums out");
   }
   if (settings.count("record", "full_runs") > kRunsOfAGroup) {
-    throw StudyError(settings.place("record", "full_runs") + ": more than " + group +
-                     " (sums store at most so many runs in full): lower it");
+    throw StudyError("{}: more than {} (sums store at most so many runs in full): lower it",
+                     settings.place("record", "full_runs"), group);
   }
   const std::uint64_t runs = settings.count("study", "runs");
   const auto is_border = [&](std::uint64_t run) { return run % kRunsOfAGroup == 0 || run == runs; };
   if (range && !(is_border(range->first) && is_border(range->last))) {
-    throw StudyError("--runs " + std::to_string(range->first) + ":" + std::to_string(range->last) +
-                     ": not whole groups (runs are summed up in groups of " + group +
-                     "): give multiples of " + group);
+    throw StudyError(
+        "--runs {}:{}: not whole groups (runs are summed up in groups of {}): give multiples of {}",
+        range->first, range->last, group, group);
   }
 }
 

@@ -2,6 +2,7 @@
 #include "experiments/study/read_drives.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "experiments/recordings/log_csv.hpp"
 #include "experiments/recordings/recorded_drive.hpp"
 #include "experiments/text/words.hpp"
@@ -22,16 +23,17 @@ void require_reference(const Settings& settings, const DriveLog& log) {
   const std::string& name = settings.text(kScenario, "reference");
   if (name.empty()) return;
   item_called(name, log.references, &ReferencePath::name,
-              settings.place(kScenario, "reference") + ": reference = " + name +
-                  " (the drive has none of that name)");
+              formatted("{}: reference = {} (the drive has none of that name)",
+                        settings.place(kScenario, "reference"), name));
 }
 
 void require_same_drive(const Settings& settings, const std::string& expected,
                         const std::string& fingerprint, const fs::path& folder) {
   if (expected.empty() || expected == fingerprint) return;
-  throw StudyError(settings.place(kScenario, "data_sha256") + ": the drive in " + folder.string() +
-                   " is another one than the study was made with (its fingerprint is " +
-                   fingerprint + "): give the same files, or remove data_sha256");
+  throw StudyError(
+      "{}: the drive in {} is another one than the study was made with (its fingerprint is {}): "
+      "give the same files, or remove data_sha256",
+      settings.place(kScenario, "data_sha256"), folder, fingerprint);
 }
 
 /// The folders of recorded drives that the study names.
@@ -39,18 +41,18 @@ std::vector<std::string> paths_in(const Settings& settings, const fs::path& stud
   const std::string& path = settings.text(kScenario, "path");
   std::vector<std::string> paths = recordings_in(path, {study_folder});
   if (std::ranges::find(paths, "") == paths.end()) return paths;
-  throw StudyError(settings.place(kScenario, "path") + ": path = " + path +
-                   " names a folder that has no name (folders are separated by commas): write "
-                   "path = monday, tuesday");
+  throw StudyError(
+      "{}: path = {} names a folder that has no name (folders are separated by commas): write path "
+      "= monday, tuesday",
+      settings.place(kScenario, "path"), path);
 }
 
 /// Throws StudyError unless there is one run for each drive.
 void require_runs_to_fit(const Settings& settings, std::size_t drives) {
   if (drives < 2 || settings.count("study", "runs") == drives) return;
   throw StudyError(
-      settings.place("study", "runs") + ": runs = " + settings.text("study", "runs") + " with " +
-      std::to_string(drives) +
-      " drives in scenario.path (each drive is one run): set runs = " + std::to_string(drives));
+      "{}: runs = {} with {} drives in scenario.path (each drive is one run): set runs = {}",
+      settings.place("study", "runs"), settings.text("study", "runs"), drives, drives);
 }
 
 /// The fingerprint of each drive as stored in the study; empty texts if it has none.
@@ -59,10 +61,11 @@ std::vector<std::string> expected_fingerprints(const Settings& settings, std::si
   if (text.empty()) return std::vector<std::string>(drives);
   std::vector<std::string> expected = split(text, ',');
   if (expected.size() == drives) return expected;
-  throw StudyError(settings.place(kScenario, "data_sha256") + ": " +
-                   std::to_string(expected.size()) + " fingerprints of " + std::to_string(drives) +
-                   " drives (the study was made with as many drives as it has fingerprints): name "
-                   "as many folders in scenario.path, in the same order, or remove data_sha256");
+  throw StudyError(
+      "{}: {} fingerprints of {} drives (the study was made with as many drives as it has "
+      "fingerprints): name as many folders in scenario.path, in the same order, or remove "
+      "data_sha256",
+      settings.place(kScenario, "data_sha256"), expected.size(), drives);
 }
 
 /// Refuses a drive that is listed twice, because it would count as two independent ones.
@@ -72,9 +75,9 @@ void refuse_drive_again(const Settings& settings, const std::vector<std::string>
     const auto first = std::ranges::find(fingerprints, fingerprints[k]) - fingerprints.begin();
     if (static_cast<std::size_t>(first) == k) continue;
     throw StudyError(
-        settings.place(kScenario, "path") + ": " + paths[k] + " holds the drive of " +
-        paths[static_cast<std::size_t>(first)] +
-        " again (a drive that counts twice makes any verdict too certain): remove one");
+        "{}: {} holds the drive of {} again (a drive that counts twice makes any verdict too "
+        "certain): remove one",
+        settings.place(kScenario, "path"), paths[k], paths[static_cast<std::size_t>(first)]);
   }
 }
 

@@ -2,6 +2,7 @@
 #include "experiments/study/setting_table.hpp"
 
 #include "engine/core/judgement.hpp"
+#include "engine/formatted.hpp"
 #include "engine/records/columns.hpp"
 #include "engine/text/wrapped_text.hpp"
 #include "experiments/text/words.hpp"
@@ -98,8 +99,8 @@ void add_increment_noise(const SectionOfTable& section, bool needs_matched) {
                                                      "left",
                                                      "turn"};
   for (std::size_t i = 0; i < kIncrementKeys.size(); ++i) {
-    const std::string meaning = std::string("standard deviation of the ") + kOf[i] +
-                                " after one second. Equation (1.11) of EQUATIONS.";
+    const std::string meaning = formatted(
+        "standard deviation of the {} after one second. Equation (1.11) of EQUATIONS.", kOf[i]);
     const char* const unit = i < 2 ? "m/s^0.5" : "deg/s^0.5";
     section.only_if(section.number(kIncrementKeys[i], unit, "0", 0, 1e6, meaning.c_str()),
                     "increment_noise", {"additive"});

@@ -2,6 +2,7 @@
 #include "experiments/study/settings.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "engine/numbers/angle.hpp"
 #include "engine/text/visible_text.hpp"
 #include "engine/text/wrapped_text.hpp"
@@ -19,18 +20,19 @@ IniText read_ini(const std::string& text, const std::string& name) {
   std::string line;
   for (int number = 1; std::getline(stream, line); ++number) {
     const std::string_view content = trimmed(std::string_view(line).substr(0, line.find('#')));
-    const std::string place = name + ":" + std::to_string(number);
+    const std::string place = formatted("{}:{}", name, number);
     if (content.empty()) continue;
     const std::size_t equals = std::min(content.find('='), content.size());
     const std::string_view key = trimmed(content.substr(0, equals));
     if (content.front() == '[' && content.back() == ']') {
       ini.sections.push_back({std::string(content.substr(1, content.size() - 2)), place});
     } else if (key.empty() || equals == content.size()) {
-      throw StudyError(place + ": stray text '" + std::string(content) +
-                       "' (a line is [section] or key = value): complete it, or put # before it");
+      throw StudyError(
+          "{}: stray text '{}' (a line is [section] or key = value): complete it, or put # before "
+          "it",
+          place, content);
     } else if (ini.sections.empty()) {
-      throw StudyError(place + ": '" + std::string(content) +
-                       "' stands before any section: put [study] above it");
+      throw StudyError("{}: '{}' stands before any section: put [study] above it", place, content);
     } else {
       ini.entries.push_back({ini.sections.back().name, std::string(key),
                              std::string(trimmed(content.substr(equals + 1))), place});
@@ -45,13 +47,13 @@ using Kind = Parameter::Kind;
 
 std::string remedy_of(const Parameter& option) {
   const std::string value = option.fallback.value_or(option.example);
-  return value.empty() ? "correct it" : "give e.g. " + option.key + " = " + value;
+  return value.empty() ? "correct it" : formatted("give e.g. {} = {}", option.key, value);
 }
 
 [[noreturn]] void throw_bad_value(const Parameter& option, std::string_view text,
                                   const std::string& place) {
-  throw StudyError(place + ": " + option.key + " = " + std::string(text) + " (" +
-                   demand_of(option) + " is needed): " + remedy_of(option));
+  throw StudyError("{}: {} = {} ({} is needed): {}", place, option.key, text, demand_of(option),
+                   remedy_of(option));
 }
 
 std::string checked_number(const Parameter& option, std::string_view text,
@@ -75,19 +77,19 @@ std::string checked_count(const Parameter& option, std::string_view text,
 std::string checked_text(const Parameter& option, std::string_view text, const std::string& place) {
   const std::size_t longest = option.key == "name" ? 200 : option.key == "title" ? 1000 : 1'000'000;
   if (text.size() > longest) {
-    throw StudyError(place + ": " + option.key + " has " + std::to_string(text.size()) +
-                     " characters (at most " + std::to_string(longest) + "): shorten it");
+    throw StudyError("{}: {} has {} characters (at most {}): shorten it", place, option.key,
+                     text.size(), longest);
   }
   if (visible(text, "\t") != text) {
-    throw StudyError(place + ": " + option.key + " = " + visible(text) +
-                     " (a control character, or bytes that are no UTF-8): remove them");
+    throw StudyError("{}: {} = {} (a control character, or bytes that are no UTF-8): remove them",
+                     place, option.key, visible(text));
   }
   return std::string(text);
 }
 
 void check_choice(const Parameter& option, const std::string& word, const std::string& place) {
   item_called(word, option.choices, std::identity(),
-              place + ": " + option.key + " = " + word + " (" + demand_of(option) + " is needed)");
+              formatted("{}: {} = {} ({} is needed)", place, option.key, word, demand_of(option)));
 }
 
 /// Checks a list of choices, and returns it in the order of the table without repetitions.
@@ -114,7 +116,8 @@ std::string most_of(const Parameter& option) {
 
 std::string demand_of(const Parameter& option) {
   const std::string unit = option.unit.empty() || option.unit == "1" ? "" : " " + option.unit;
-  const std::string range = " from " + to_text(option.least) + " to " + most_of(option) + unit;
+  const std::string range =
+      formatted(" from {} to {}{}", to_text(option.least), most_of(option), unit);
   switch (option.kind) {
     case Kind::text:
       return "a text";
@@ -157,10 +160,11 @@ const Setting& known_setting(const IniEntry& entry) {
     if (setting.section == entry.section) here.push_back(&setting);
   }
   const auto key_of = [](const Setting* setting) { return setting->key; };
-  const std::string problem = entry.place + ": unknown key " + entry.section + "." + entry.key;
+  const std::string problem =
+      formatted("{}: unknown key {}.{}", entry.place, entry.section, entry.key);
   const std::string elsewhere = sections_with(entry.key);
   if (std::ranges::find(here, entry.key, key_of) == here.end() && !elsewhere.empty())
-    throw StudyError(problem + " (it belongs to another section): move it to " + elsewhere);
+    throw StudyError("{} (it belongs to another section): move it to {}", problem, elsewhere);
   return *item_called(entry.key, here, key_of, problem + " (it would have no effect)");
 }
 
@@ -175,9 +179,9 @@ void refuse_value_of_other_section(const Setting& setting, const IniEntry& entry
     return one.key == entry.key && has_choice(one);
   });
   if (other == study_settings().end()) return;
-  throw StudyError(entry.place + ": " + entry.section + "." + entry.key + " = " + entry.value +
-                   " (" + demand_of(setting) + " is needed): move it to [" + other->section +
-                   "], whose " + entry.key + " may be " + entry.value);
+  throw StudyError("{}: {}.{} = {} ({} is needed): move it to [{}], whose {} may be {}",
+                   entry.place, entry.section, entry.key, entry.value, demand_of(setting),
+                   other->section, entry.key, entry.value);
 }
 
 /// The setting of that name, which must be in the table.
@@ -195,11 +199,10 @@ const Setting& setting_called(const std::string& section, const std::string& key
     return other.section == "belief" && other.key == setting.key;
   };
   const bool believed = broken.key == "kind" && std::ranges::any_of(study_settings(), in_belief);
-  const std::string chooser = broken.section + "." + broken.key;
-  throw StudyError(place + ": " + setting.section + "." + setting.key + " does not apply to " +
-                   chooser + " = " + value + " (it is for " + joined(broken.values) +
-                   "): remove it, or " +
-                   (believed ? "give it under [belief]" : "correct " + chooser));
+  const std::string chooser = formatted("{}.{}", broken.section, broken.key);
+  throw StudyError("{}: {}.{} does not apply to {} = {} (it is for {}): remove it, or {}", place,
+                   setting.section, setting.key, chooser, value, joined(broken.values),
+                   believed ? "give it under [belief]" : "correct " + chooser);
 }
 
 }  // namespace
@@ -223,8 +226,8 @@ void Settings::take(const IniEntry& entry) {
   const SettingValue value{checked_value(setting, entry.value, entry.place), entry.place};
   const auto [at, fresh] = values_.try_emplace({entry.section, entry.key}, value);
   if (fresh) return;
-  throw StudyError(entry.place + ": " + entry.section + "." + entry.key +
-                   " is given twice (first at " + at->second.place + "): remove one of the two");
+  throw StudyError("{}: {}.{} is given twice (first at {}): remove one of the two", entry.place,
+                   entry.section, entry.key, at->second.place);
 }
 
 void Settings::fill_in(const std::string& name) {
@@ -238,13 +241,14 @@ void Settings::fill_in(const std::string& name) {
     if (given != values_.end()) continue;
     const std::optional<std::string> fallback = setting.fallback_for(kind);
     if (!fallback) {
-      throw StudyError(name + ": " + setting.section + "." + setting.key + " is missing (" +
-                       engine::first_sentence(setting.meaning) + "): add " + setting.key + " = " +
-                       setting.example + " under [" + setting.section + "]");
+      throw StudyError("{}: {}.{} is missing ({}): add {} = {} under [{}]", name, setting.section,
+                       setting.key, engine::first_sentence(setting.meaning), setting.key,
+                       setting.example, setting.section);
     }
     const std::string value =
         *fallback == kFromScenario ? copied_from_scenario(setting) : *fallback;
-    const std::string place = name + ": " + setting.section + "." + setting.key + " (not given)";
+    const std::string place =
+        formatted("{}: {}.{} (not given)", name, setting.section, setting.key);
     values_[{setting.section, setting.key}] = {checked_value(setting, value, place), name};
   }
 }
@@ -258,9 +262,9 @@ std::string Settings::copied_from_scenario(const Setting& setting) const {
   try {
     return checked_value(setting, value, given_at);
   } catch (const StudyError&) {
-    throw StudyError(given_at + ": scenario." + setting.key + " = " + value +
-                     " cannot be assumed by the filters (" + demand_of(setting) +
-                     " is needed): give [belief] " + setting.key);
+    throw StudyError(
+        "{}: scenario.{} = {} cannot be assumed by the filters ({} is needed): give [belief] {}",
+        given_at, setting.key, value, demand_of(setting), setting.key);
   }
 }
 

@@ -2,6 +2,7 @@
 #include "experiments/study/stopping_rule.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "experiments/text/words.hpp"
 
 #include <vector>
@@ -26,18 +27,19 @@ std::optional<StoppingRule> parse_stopping_rule(const std::string& text, const s
   const std::vector<std::string> sides = split(text, '<');
   const auto width = sides.size() == 2 ? to_number(sides[1]) : std::nullopt;
   if (!width || !(*width > 0.0)) {
-    throw StudyError(place + ": until = " + text +
-                     " (METRIC < HALF-WIDTH, the half-width above 0, or verdict is needed): give "
-                     "e.g. until = position_rmse < 0.02, until = verdict, until = verdict, 100 "
-                     "runs, or nothing to make all runs");
+    throw StudyError(
+        "{}: until = {} (METRIC < HALF-WIDTH, the half-width above 0, or verdict is needed): give "
+        "e.g. until = position_rmse < 0.02, until = verdict, until = verdict, 100 runs, or nothing "
+        "to make all runs",
+        place, text);
   }
   return StoppingRule{.metric = sides[0], .half_width = *width};
 }
 
 std::string text_of(const StoppingRule& rule) {
-  if (rule.metric) return *rule.metric + " < " + to_text(rule.half_width);
+  if (rule.metric) return formatted("{} < {}", *rule.metric, to_text(rule.half_width));
   if (rule.least_runs == StoppingRule::kUsualLeastRuns) return kUntilVerdict;
-  return std::string(kUntilVerdict) + ", " + std::to_string(rule.least_runs) + " runs";
+  return formatted("{}, {} runs", kUntilVerdict, rule.least_runs);
 }
 
 }  // namespace montecarta::experiments

@@ -2,6 +2,7 @@
 #include "experiments/study/study.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "experiments/files/files.hpp"
 #include "experiments/study/fixes.hpp"
 #include "experiments/study/known_map.hpp"
@@ -18,15 +19,14 @@ Eigen::Vector2d read_point(const IniEntry& entry) {
   const auto x = to_number(parts.front());
   const auto y = to_number(parts.back());
   if (parts.size() == 2 && x && y) return {*x, *y};
-  throw StudyError(entry.place + ": " + entry.key + " = " + entry.value +
-                   " (two coordinates in metres are needed): write e.g. " + entry.key +
-                   " = 12.5, -3");
+  throw StudyError("{}: {} = {} (two coordinates in metres are needed): write e.g. {} = 12.5, -3",
+                   entry.place, entry.key, entry.value, entry.key);
 }
 
 std::string lines_of(const std::string& kind, const std::vector<Eigen::Vector2d>& points) {
   std::string text;
   for (const Eigen::Vector2d& point : points) {
-    text += kind + " = " + to_text(point.x()) + ", " + to_text(point.y()) + "\n";
+    text += formatted("{} = {}, {}\n", kind, to_text(point.x()), to_text(point.y()));
   }
   return text;
 }
@@ -50,9 +50,9 @@ World read_inline_world(const IniText& ini, const std::string& name, const std::
 void refuse_unknown_sections(const IniText& ini) {
   const std::vector<std::string> known = study_sections();
   for (const IniSection& section : ini.sections) {
-    item_called(
-        section.name, known, std::identity(),
-        section.place + ": unknown section [" + section.name + "] (it would have no effect)");
+    item_called(section.name, known, std::identity(),
+                formatted("{}: unknown section [{}] (it would have no effect)", section.place,
+                          section.name));
   }
 }
 
@@ -60,13 +60,14 @@ IniEntry override_entry(const std::string& text) {
   const std::size_t equals = text.find('=');
   const std::size_t dot = text.find('.');
   if (equals == std::string::npos || dot == std::string::npos || dot > equals) {
-    throw StudyError("--set " + text +
-                     ": not understood (the form is section.key=value): write e.g. --set "
-                     "study.runs=10, and change cells in the study file");
+    throw StudyError(
+        "--set {}: not understood (the form is section.key=value): write e.g. --set study.runs=10, "
+        "and change cells in the study file",
+        text);
   }
   if (text.find_first_of("#\n\r") != std::string::npos) {
-    throw StudyError("--set " + text +
-                     ": the value holds # or a new line (no study file could): leave it out");
+    throw StudyError(
+        "--set {}: the value holds # or a new line (no study file could): leave it out", text);
   }
   const std::string_view whole = text;
   return {std::string(trimmed(whole.substr(0, dot))),
@@ -95,7 +96,8 @@ World world_of(const IniText& ini, const Settings& settings, const std::filesyst
   const std::string& name = settings.text("scenario", "world");
   const std::string& place = settings.place("scenario", "world");
   if (has_inline_world(ini)) return read_inline_world(ini, name, place);
-  return at_place(place + ": scenario.world = " + name, [&] { return find_world(name, {folder}); });
+  return at_place(formatted("{}: scenario.world = {}", place, name),
+                  [&] { return find_world(name, {folder}); });
 }
 
 /// A setting that has no effect and is left out, so that the fingerprints of studies without it do
@@ -146,10 +148,10 @@ void refuse_pilot(const Settings& settings) {
 
 void refuse_world(const IniText& ini, const Settings& settings) {
   if (!has_inline_world(ini)) return;
-  throw StudyError(settings.place("scenario", "kind") +
-                   ": scenario.kind = " + settings.scenario_kind() +
-                   " has its own world, and the study a [world] (it would have no effect): remove "
-                   "[world]");
+  throw StudyError(
+      "{}: scenario.kind = {} has its own world, and the study a [world] (it would have no "
+      "effect): remove [world]",
+      settings.place("scenario", "kind"), settings.scenario_kind());
 }
 
 }  // namespace
@@ -220,11 +222,11 @@ std::string resolved_text(const Study& study) {
   std::string text;
   for (const std::string& section : study_sections()) {
     if (section == "world" && !study.logs.empty()) continue;
-    text += "[" + section + "]\n";
+    text += formatted("[{}]\n", section);
     for (const auto& [key, value] : stated_settings(study.settings, section))
-      text += key + " = " + value + "\n";
+      text += formatted("{} = {}\n", key, value);
     if (section == "cells") {
-      for (const CellSpec& cell : study.cells) text += "cell = " + cell_line(cell) + "\n";
+      for (const CellSpec& cell : study.cells) text += formatted("cell = {}\n", cell_line(cell));
     }
     if (section == "world") {
       text += lines_of("waypoint", study.world.waypoints);

@@ -2,6 +2,7 @@
 #include "experiments/text/words.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 
 #include <algorithm>
 #include <array>
@@ -36,8 +37,7 @@ std::string between_quotes(std::string_view text, std::size_t& at) {
     inside += text[escapes ? ++at : at];
   }
   if (at++ < text.size()) return inside;
-  throw StudyError(std::string("a quote ") + quote +
-                   " is not closed (# begins a comment, in quotes too): close it");
+  throw StudyError("a quote {} is not closed (# begins a comment, in quotes too): close it", quote);
 }
 
 }  // namespace
@@ -123,7 +123,7 @@ std::string nearest_spelling(std::string_view word, std::span<const std::string>
   const auto nearest = std::min_element(known.begin(), known.end(), nearer);
   const std::size_t tolerated = std::max<std::size_t>(2, word.size() / 3);
   if (nearest != known.end() && edit_distance(word, *nearest) <= tolerated) {
-    return "did you mean " + *nearest + "?";
+    return formatted("did you mean {}?", *nearest);
   }
   return "known: " + joined(known);
 }

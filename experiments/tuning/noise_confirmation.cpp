@@ -7,6 +7,7 @@
 #include "analysis/statistics/spread.hpp"
 #include "analysis/verdict/innovations.hpp"
 #include "engine/core/judgement.hpp"
+#include "engine/formatted.hpp"
 #include "engine/text/number_text.hpp"
 #include "experiments/study/make_plan.hpp"
 #include "experiments/tuning/filter_on_drive.hpp"
@@ -148,8 +149,8 @@ void judge_innovations(std::vector<SecondHalf> halves, double within,
       found.whiteness() == Whiteness::not_white && found.verdict.answer == Answer::consistent
           ? Answer::inconsistent
           : found.verdict.answer;
-  confirmation.verdict = whiteness_in_words(found) + ", with a NIS of " + readable(found.ratio) +
-                         " per component, where 1 is right";
+  confirmation.verdict = formatted("{}, with a NIS of {} per component, where 1 is right",
+                                   whiteness_in_words(found), readable(found.ratio));
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/tuning/noise_factors.hpp"
 
+#include "engine/formatted.hpp"
 #include "engine/text/number_text.hpp"
 #include "experiments/text/words.hpp"
 
@@ -14,8 +15,9 @@ constexpr int kDigitsOfFactor = 4;
 void multiply_option(const Parameter& option, double factor, CellSpec& cell) {
   const double product = mismatch_of(cell, option.key) * factor;
   std::erase_if(cell.options, [&](const auto& one) { return one.first == option.key; });
-  const std::string text = checked_value(option, readable(product, kDigitsOfFactor),
-                                         cell.place + ": cell " + cell.label + ": " + option.key);
+  const std::string text =
+      checked_value(option, readable(product, kDigitsOfFactor),
+                    formatted("{}: cell {}: {}", cell.place, cell.label, option.key));
   if (text != "1") cell.options.emplace_back(option.key, text);
 }
 

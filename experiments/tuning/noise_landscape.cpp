@@ -24,9 +24,9 @@ std::uint64_t runs_to_learn_from(const Study& study, const StudyPlan& plan) {
     return std::max<std::uint64_t>(plan.drives->own_drives(), 1);
   const std::uint64_t fewest = fewest_for_bound(kUsualLevel);
   if (plan.runs >= fewest) return plan.runs;
-  throw StudyError(study.settings.place("study", "runs") + ": runs = " + std::to_string(plan.runs) +
-                   " (too few to choose noise by): give " + std::to_string(fewest) +
-                   " or more, e.g. --set study.runs=200");
+  throw StudyError(
+      "{}: runs = {} (too few to choose noise by): give {} or more, e.g. --set study.runs=200",
+      study.settings.place("study", "runs"), plan.runs, fewest);
 }
 
 }  // namespace
@@ -52,10 +52,10 @@ NoiseLandscape::NoiseLandscape(const Study& study, const CellSpec& cell, const P
     if (fewest >= kFewestScans * kPredictionIntervals[k] * parts_of_run_) intervals_.push_back(k);
   }
   if (!intervals_.empty()) return;
-  throw StudyError(study.settings.place("study", "name") + ": " + std::to_string(fewest) +
-                   " scans (too few to choose noise by): take a longer drive, with at least " +
-                   std::to_string(kFewestScans * parts_of_run_) +
-                   (has_truth() ? " scans" : " scans in its first half"));
+  throw StudyError(
+      "{}: {} scans (too few to choose noise by): take a longer drive, with at least {} {}",
+      study.settings.place("study", "name"), fewest, kFewestScans * parts_of_run_,
+      has_truth() ? "scans" : "scans in its first half");
 }
 
 std::size_t NoiseLandscape::scans_of(std::uint64_t run) const {

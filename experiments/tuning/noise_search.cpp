@@ -5,6 +5,7 @@
 #include "analysis/statistics/fitted_minimum.hpp"
 #include "engine/core/judgement.hpp"
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "engine/text/number_text.hpp"
 
 #include <Eigen/Eigenvalues>
@@ -183,8 +184,8 @@ NoiseGrid grid_of(NoiseLandscape& landscape, const LatticePoint& centre, const A
 }
 
 std::string factors_text(const LatticePoint& point) {
-  return "a factor of " + readable(factor_at(point.motion)) + " on motion and " +
-         readable(factor_at(point.sensor)) + " on sensor";
+  return formatted("a factor of {} on motion and {} on sensor", readable(factor_at(point.motion)),
+                   readable(factor_at(point.sensor)));
 }
 
 void refuse_no_minimum(const CellSpec& cell, const LatticePoint& least, const Axes& is_free) {
@@ -193,9 +194,10 @@ void refuse_no_minimum(const CellSpec& cell, const LatticePoint& least, const Ax
                           : is_free[0] && is_free[1]
                               ? "no surface fits it, or the filter fails near by"
                               : "the filter fails near by";
-  throw StudyError(cell.place + ": cell " + cell.label + ": its score has no minimum near " +
-                   factors_text(least) + " (" + why +
-                   "): use more runs or a longer drive, or check the other settings of [belief]");
+  throw StudyError(
+      "{}: cell {}: its score has no minimum near {} ({}): use more runs or a longer drive, or "
+      "check the other settings of [belief]",
+      cell.place, cell.label, factors_text(least), why);
 }
 
 }  // namespace
@@ -204,10 +206,10 @@ TuningResult find_noise(const Study& study, const CellSpec& cell, const Parallel
   NoiseLandscape landscape(study, cell, parallel);
   const Axes is_free = free_axes(landscape, std::min(kRunsOfSearch, landscape.runs()));
   if (!is_free[0] && !is_free[1]) {
-    throw StudyError(cell.place + ": cell " + cell.label +
-                     " has the same score with any noise (it assumes none, or nothing is " +
-                     (landscape.has_truth() ? "scored" : "predicted") +
-                     "): tune a filter that uses the noise of [belief]");
+    throw StudyError(
+        "{}: cell {} has the same score with any noise (it assumes none, or nothing is {}): tune a "
+        "filter that uses the noise of [belief]",
+        cell.place, cell.label, landscape.has_truth() ? "scored" : "predicted");
   }
   const NoiseSearch search(landscape, landscape.intervals(), is_free);
   const LatticePoint octave = search.descend({}, kGridSides, kOctave);

@@ -2,6 +2,7 @@
 #include "experiments/worlds/world.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "experiments/files/files.hpp"
 #include "experiments/text/words.hpp"
 
@@ -15,8 +16,9 @@ void check_points(const std::vector<Eigen::Vector2d>& points, const std::string&
                   const std::string& noun) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (points[i].allFinite() && points[i].cwiseAbs().maxCoeff() <= kFarthestCoordinate) continue;
-    throw StudyError(place + ": " + noun + " " + std::to_string(i + 1) +
-                     " is no place (a coordinate is not finite or beyond 1e6 m): correct it");
+    throw StudyError(
+        "{}: {} {} is no place (a coordinate is not finite or beyond 1e6 m): correct it", place,
+        noun, i + 1);
   }
 }
 
@@ -39,8 +41,9 @@ fs::path resolved_path(const std::string& name, const std::vector<fs::path>& fol
 void add_point(std::string_view kind, const Eigen::Vector2d& point, const std::string& place,
                World& world) {
   static const std::array<std::string, 2> kinds = {"landmark", "waypoint"};
-  item_called(kind, kinds, std::identity(),
-              place + ": unknown kind '" + excerpt(kind) + "' (a world has landmark and waypoint)");
+  item_called(
+      kind, kinds, std::identity(),
+      formatted("{}: unknown kind '{}' (a world has landmark and waypoint)", place, excerpt(kind)));
   if (kind == kinds[0]) return world.landmarks.push_back(point);
   world.waypoints.push_back(point);
   world.waypoint_places.push_back(place);
@@ -48,8 +51,8 @@ void add_point(std::string_view kind, const Eigen::Vector2d& point, const std::s
 
 void check_world(const World& world, const std::string& place) {
   if (world.waypoints.size() < 2) {
-    throw StudyError(place + ": " + std::to_string(world.waypoints.size()) +
-                     " way-points (a drive needs at least two): add way-points");
+    throw StudyError("{}: {} way-points (a drive needs at least two): add way-points", place,
+                     world.waypoints.size());
   }
   if (world.landmarks.empty()) {
     throw StudyError(place + ": no landmarks (there is nothing to map): add at least one");
@@ -60,9 +63,10 @@ void check_world(const World& world, const std::string& place) {
 
 World read_world_file(const fs::path& path) {
   if (!fs::exists(path)) {
-    throw StudyError(path.string() +
-                     ": no such world file (looked from here and from the study's folder): " +
-                     "correct the path, or name a shipped world: " + joined(shipped_worlds()));
+    throw StudyError(
+        "{}: no such world file (looked from here and from the study's folder): correct the path, "
+        "or name a shipped world: {}",
+        path, joined(shipped_worlds()));
   }
   if (path.extension() != ".csv") {
     throw StudyError(path.string() +
@@ -82,7 +86,7 @@ World read_world_file(const fs::path& path) {
 World find_world(const std::string& name, const std::vector<fs::path>& folders) {
   if (is_path(name)) return read_world_file(resolved_path(name, folders));
   if (const auto shipped = shipped_file("worlds", name + ".csv")) return read_world_file(*shipped);
-  throw StudyError("unknown world '" + name + "' (neither shipped nor a path to a .csv file): " +
+  throw StudyError("unknown world '{}' (neither shipped nor a path to a .csv file): {}", name,
                    nearest_spelling(name, shipped_worlds()));
 }
 

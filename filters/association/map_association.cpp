@@ -2,6 +2,7 @@
 #include "filters/association/map_association.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 
 #include <algorithm>
 #include <string>
@@ -46,8 +47,8 @@ void MapAssociation::add(std::int32_t identity) {
     if (k >= slot_of_identity_.size()) slot_of_identity_.resize(k + 1, kUnseen);
     slot_of_identity_[k] = static_cast<std::uint32_t>(slot);
   } else if (slot >= settings_.most_landmarks) {
-    throw std::runtime_error("the map grew beyond " + std::to_string(settings_.most_landmarks) +
-                             " landmarks");
+    throw std::runtime_error(
+        formatted("the map grew beyond {} landmarks", settings_.most_landmarks));
   }
   made_of_.push_back(identity);
 }

@@ -18,7 +18,7 @@ struct EvolutionEffect {
   double displacement = 0.0;  ///< how far that was moved, in standard deviations
 };
 
-/// What differential evolution did at one scan: the columns evolution_* of filters that evolve.
+/// The columns evolution_* of one scan, for filters that evolve.
 class EvolutionReport {
  public:
   /// Declares the columns, in the order of values().

@@ -133,7 +133,7 @@ class PackedCandidates {
   std::vector<std::uint32_t> place_of_;  ///< member and lane of every packed candidate
 };
 
-/// What the particles of one block found by their own evolution (EQUATIONS 10).
+/// The most probable poses of the particles of one block, found by evolution (EQUATIONS 10).
 template <class Real>
 struct MostProbable {
   std::array<Real, 3> offset{Real(0.0), Real(0.0), Real(0.0)};  ///< in standard deviations

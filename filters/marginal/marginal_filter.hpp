@@ -183,7 +183,7 @@ class MarginalFilter final : public SlamFilter {
   SharedAssociation association_;
   SharedLikelihood<Real> likelihood_;
   MapLearning<Real> learning_;
-  EvolutionReport report_;  ///< of the evolution of the map, if there is one
+  EvolutionReport report_;  ///< on the evolution of the map; empty if nothing evolves
   KernelRatios<Real> ratios_;
   MotionIncrement motion_;
   Population<Real> population_;  ///< the particles, whose weights are w

@@ -2,6 +2,7 @@
 #include "filters/setup/filter_setup.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 
 #include <charconv>
 
@@ -9,8 +10,8 @@ namespace montecarta::filters {
 
 const std::string& FilterOptions::choice(std::string_view name) const {
   const auto found = values_.find(name);
-  const std::string missing = "a filter asks for the option '" + std::string(name) +
-                              "', which its FilterKind does not list";
+  const std::string missing =
+      formatted("a filter asks for the option '{}', which its FilterKind does not list", name);
   expect(found != values_.end(), missing.c_str());
   return found->second;
 }

@@ -119,7 +119,7 @@ void run_gnuplot(const std::filesystem::path& directory, const std::vector<std::
   command += " </dev/null 2>&1";
   FILE* const output = ::popen(command.c_str(), "re");
   if (output == nullptr)
-    throw RunError(program + ": cannot be started (" + std::strerror(errno) + ")");
+    throw RunError("{}: cannot be started ({})", program, std::strerror(errno));
   std::string last = "it says nothing";  // the last line that is not empty
   std::array<char, 512> line{};
   while (std::fgets(line.data(), line.size(), output) != nullptr) {
@@ -136,8 +136,9 @@ void run_gnuplot(const std::filesystem::path& directory, const std::vector<std::
   if (status == 0) return;
   std::string all;
   for (const std::string& name : scripts) all += (all.empty() ? "" : ", ") + name;
-  throw RunError(directory.string() + ": gnuplot failed at " + all + " (" + last +
-                 "): draw them again by gnuplot, and look at what it says");
+  throw RunError(
+      "{}: gnuplot failed at {} ({}): draw them again by gnuplot, and look at what it says",
+      directory, all, last);
 }
 
 std::string gnuplot_quoted(const std::string& text) {

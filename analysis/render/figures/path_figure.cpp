@@ -164,8 +164,8 @@ std::optional<std::size_t> chosen_run(const ResultFile& file, std::optional<std:
   if (run) {
     const auto found = std::ranges::find(file.runs(), *run);
     if (found == file.runs().end()) {
-      throw StudyError(file.path().string() + ": run " + std::to_string(*run) +
-                       " (the file does not hold it): choose another with --run");
+      throw StudyError("{}: run {} (the file does not hold it): choose another with --run",
+                       file.path(), *run);
     }
     return static_cast<std::size_t>(found - file.runs().begin());
   }

@@ -10,6 +10,7 @@
 #include "analysis/study/text_table.hpp"
 #include "analysis/study/verdict_table.hpp"
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "engine/text/wrapped_text.hpp"
 
 #include <algorithm>
@@ -77,8 +78,8 @@ void print_head(std::ostream& out, const StudyAnalysis& study, std::size_t width
       std::to_string(study.runs_here) +
       (study.runs_here == study.study_runs ? "" : " of " + std::to_string(study.study_runs));
   const std::string noun = study.runs_here == 1 && study.study_runs == 1 ? " run, " : " runs, ";
-  out << engine::wrapped(study.study_name + ": " + runs + noun + study.scans_text() + ", seed " +
-                             std::to_string(study.seed),
+  out << engine::wrapped(formatted("{}: {}{}{}, seed {}", study.study_name, runs, noun,
+                                   study.scans_text(), study.seed),
                          width)
       << '\n';
   if (study.has_failures()) print_failures(out, study, width);
@@ -148,8 +149,7 @@ void print_named(std::ostream& out, const StudyAnalysis& study, const std::strin
       return;
     }
   }
-  throw StudyError("--table " + name + ": no table of this study has that name: take one of " +
-                   known);
+  throw StudyError("--table {}: no table of this study has that name: take one of {}", name, known);
 }
 
 }  // namespace montecarta::analysis

@@ -7,6 +7,7 @@
 #include "experiments/study/make_drives.hpp"
 #include "tests/doubles/matchers.hpp"
 #include "tests/experiments/commands/program.hpp"
+#include "tests/experiments/study/study_text.hpp"
 
 #include <bit>
 
@@ -78,8 +79,9 @@ TEST_F(Export, AnEstimatorSeesNoTruth) {
   EXPECT_TRUE(exists("drives/truth/run_0001/reference.csv"));
   EXPECT_TRUE(exists("drives/truth/study.ini"));
   EXPECT_THAT(text_of("drives/runs/run_0001/detections.csv"), Not(HasSubstr("identity")));
-  EXPECT_THAT(text_of("drives/belief.ini"), HasSubstr("sigma_range = 0.1\n"));
-  EXPECT_THAT(text_of("drives/belief.ini"), Not(HasSubstr("landmark =")));
+  const auto belief = settings_in(text_of("drives/belief.ini"));
+  EXPECT_EQ(belief.at("belief.sigma_range"), "0.1");
+  EXPECT_FALSE(belief.contains("world.landmark"));
 }
 
 TEST_F(Export, AnEstimatorIsGivenAKnownMapAndStartWithTheirErrors) {
@@ -100,7 +102,9 @@ TEST_F(Export, AnEstimatorIsGivenAKnownMapAndStartWithTheirErrors) {
     EXPECT_EQ(given.landmarks[k], drive.prior->map[k].mean);
     EXPECT_NE(given.landmarks[k], study.world.landmarks[k]);
   }
-  EXPECT_THAT(text_of("drives/belief.ini"), HasSubstr("map = known\nmap_sigma_m = 0.5\n"));
+  const auto belief = settings_in(text_of("drives/belief.ini"));
+  EXPECT_EQ(belief.at("belief.map"), "known");
+  EXPECT_EQ(belief.at("belief.map_sigma_m"), "0.5");
 }
 
 TEST_F(Export, RefusesFixesThatALogCannotHold) {

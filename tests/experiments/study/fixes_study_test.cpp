@@ -27,13 +27,17 @@ Drive drive_with(const std::string& text, const std::vector<std::string>& more, 
 }
 
 TEST(Fixes, AreNoPartOfTheTextOfAStudyWithoutThem) {
-  const std::string text = resolved_text(parsed(kGoodStudy));
-  EXPECT_THAT(text, AllOf(Not(HasSubstr("fixes")), Not(HasSubstr("fix_"))));
-  EXPECT_EQ(resolved_text(parsed(kGoodStudy, {"scenario.fixes=none"})), text);
-  const std::string fixed = resolved_text(parsed(kWithFixes));
-  EXPECT_EQ(resolved_text(parsed(fixed)), fixed);
-  EXPECT_THAT(fixed, AllOf(HasSubstr("fixes = position\nfix_rate = 1\nsigma_fix = 2\n[belief]"),
-                           HasSubstr("sigma_fix = 2\n[association]")));
+  const Study study = parsed(kGoodStudy), with_fixes = parsed(kWithFixes);
+  EXPECT_EQ(resolved_text(parsed(kGoodStudy, {"scenario.fixes=none"})), resolved_text(study));
+  EXPECT_EQ(resolved_text(parsed(resolved_text(with_fixes))), resolved_text(with_fixes));
+  const std::map<std::string, std::string> of_fixes = {{"scenario.fixes", "position"},
+                                                       {"scenario.fix_rate", "1"},
+                                                       {"scenario.sigma_fix", "2"},
+                                                       {"belief.sigma_fix", "2"}};
+  for (const auto& [key, value] : of_fixes) {
+    EXPECT_FALSE(resolved_settings(study).contains(key)) << key;
+    EXPECT_EQ(resolved_settings(with_fixes).at(key), value) << key;
+  }
 }
 
 TEST(Fixes, AreRefusedWithAFilterThatTakesNone) {

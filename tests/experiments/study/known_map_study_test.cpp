@@ -21,19 +21,22 @@ const std::string kKnownMap = kGoodStudy + "[belief]\nmap = known\n";
 
 TEST(KnownMap, IsNoPartOfTheTextOfAStudyWithoutIt) {
   const std::string text = resolved_text(parsed(kGoodStudy));
-  EXPECT_THAT(text, AllOf(Not(HasSubstr("map = estimated")), Not(HasSubstr("map_sigma_m")),
-                          Not(HasSubstr("start_sigma"))));
+  for (const char* key : {"belief.map", "belief.map_sigma_m", "scenario.map_sigma_m",
+                          "scenario.start_sigma_m", "scenario.start_sigma_deg"}) {
+    EXPECT_FALSE(resolved_settings(parsed(kGoodStudy)).contains(key)) << key;
+  }
   EXPECT_EQ(resolved_text(parsed(kGoodStudy, {"belief.map=estimated", "scenario.map_sigma_m=0"})),
             text);
 }
 
 TEST(KnownMap, HasATextThatIsTheSameStudy) {
-  const std::string text =
-      resolved_text(parsed(kKnownMap, {"scenario.start_sigma_deg=40", "scenario.map_sigma_m=0.5",
-                                       "belief.map_sigma_m=0"}));
-  EXPECT_EQ(resolved_text(parsed(text)), text);
-  EXPECT_THAT(text,
-              AllOf(HasSubstr("map = known\nmap_sigma_m = 0\n"), HasSubstr("map_sigma_m = 0.5\n")));
+  const Study study = parsed(kKnownMap, {"scenario.start_sigma_deg=40", "scenario.map_sigma_m=0.5",
+                                         "belief.map_sigma_m=0"});
+  EXPECT_EQ(resolved_text(parsed(resolved_text(study))), resolved_text(study));
+  const auto settings = resolved_settings(study);
+  EXPECT_EQ(settings.at("belief.map"), "known");
+  EXPECT_EQ(settings.at("belief.map_sigma_m"), "0");
+  EXPECT_EQ(settings.at("scenario.map_sigma_m"), "0.5");
 }
 
 TEST(KnownMap, IsRefusedWithAFilterThatCannotTakeIt) {

@@ -5,6 +5,7 @@
 #include "experiments/study/study.hpp"
 #include "tests/doubles/complaint.hpp"
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,20 @@ inline std::string with(const std::string& old, const std::string& fresh) {
 
 inline Study parsed(const std::string& text, const std::vector<std::string>& overrides = {}) {
   return parse_study(text, "trial.ini", ".", known_filters(), overrides);
+}
+
+/// The settings in the text of a study: the value of each "section.key".
+inline std::map<std::string, std::string> settings_in(const std::string& text) {
+  std::map<std::string, std::string> all;
+  for (const IniEntry& entry : read_ini(text, "text").entries) {
+    all[entry.section + "." + entry.key] = entry.value;
+  }
+  return all;
+}
+
+/// The settings that a study states when it is written out.
+inline std::map<std::string, std::string> resolved_settings(const Study& study) {
+  return settings_in(resolved_text(study));
 }
 
 /// The complaint of the parser; "nothing" if it has none.
