@@ -95,8 +95,8 @@ std::string remaining(const StateShape& shape, const std::vector<std::string>& n
 }  // namespace
 
 LikelyMistakes::LikelyMistakes(std::span<const std::string> cells, ErrorConvention convention,
-                               bool compares_starts)
-    : convention_(convention), compares_starts_(compares_starts) {
+                               bool compares_starts, bool is_pair)
+    : convention_(convention), compares_starts_(compares_starts), is_pair_(is_pair) {
   for (const std::string& label : cells) cells_.emplace_back().label = label;
 }
 
@@ -226,19 +226,20 @@ void LikelyMistakes::add_marks(const OfCell& cell, std::vector<std::string>& not
   }
 }
 
-void LikelyMistakes::add_notes(const OfCell& cell, std::vector<std::string>& notes) {
+void LikelyMistakes::add_notes(const OfCell& cell, std::vector<std::string>& notes) const {
+  const std::string other = is_pair_ ? "second estimates" : "truth";
   add_marks(cell, notes);
   for (std::size_t k = 0; k < cell.w_first.size(); ++k) {
     constexpr double kMuchNearer = 0.2;
-    const Misfit &stated = cell.as_stated, &other = cell.w_first[k];
-    if (!(other.angle < kMuchNearer * stated.angle)) continue;
+    const Misfit &stated = cell.as_stated, &swapped = cell.w_first[k];
+    if (!(swapped.angle < kMuchNearer * stated.angle)) continue;
     const auto mean = [&](double sum) { return compact(sum / static_cast<double>(cell.rows)); };
-    notes.push_back(cell.label + ": the quaternions of the " + (k == 0 ? "estimates" : "truth") +
+    notes.push_back(cell.label + ": the quaternions of the " + (k == 0 ? "estimates" : other) +
                     " may be written with w first, under the header qx,qy,qz,qw (then rotations "
                     "would be " +
-                    mean(other.angle) + " rad from the truth on average, with a NEES ratio of " +
-                    mean(other.nees) + ", and are " + mean(stated.angle) +
-                    " rad): write x, y, z, w");
+                    mean(swapped.angle) + " rad from the " + other +
+                    " on average, with a NEES ratio of " + mean(swapped.nees) + ", and are " +
+                    mean(stated.angle) + " rad): write x, y, z, w");
   }
   if (const std::string velocities = unturned_velocities(cell.shape); !velocities.empty()) {
     notes.push_back(cell.label + ": " + velocities +
@@ -253,9 +254,9 @@ void LikelyMistakes::add_notes(const OfCell& cell, std::vector<std::string>& not
                     "): if the frames differ, see --anchor");
   }
   if (10 * cell.later_copies > cell.rows) {  // the first row may be known exactly
-    notes.push_back(cell.label + ": the estimates equal the truth, number by number, in " +
+    notes.push_back(cell.label + ": the estimates equal the " + other + ", number by number, in " +
                     of_rows(cell.copies, cell.rows) + ", the first in " + cell.first_copy +
-                    ": are they a copy of it?");
+                    (is_pair_ ? ": is one file a copy of the other?" : ": are they a copy of it?"));
   }
 }
 

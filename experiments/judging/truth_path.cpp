@@ -28,6 +28,27 @@ Eigen::VectorXd between(const StateShape& shape, const Eigen::VectorXd& a, const
   return state;
 }
 
+/// What estimates are compared with, in words.
+std::string name_of_other(bool is_pair) { return is_pair ? "second estimate" : "truth"; }
+
+/// File and line of a row, the line if it is known.
+std::string place_of_row(const std::filesystem::path& path, const StateRows& rows,
+                         std::size_t row) {
+  if (row >= rows.line.size()) return path.string();
+  return path.string() + ":" + std::to_string(rows.line[row]);
+}
+
+/// What to do about an estimate without a truth at its time.
+std::string remedy_of_time(bool is_inside, bool is_pair) {
+  const std::string others =
+      is_pair ? "both estimators the same times" : "truths at the times of the estimates";
+  const std::string outside =
+      is_pair ? "what only one estimator has" : "estimates outside of the truth";
+  return (is_inside ? "give " + others + ", or use --interpolate, "
+                    : "leave out " + outside + ", which --interpolate does, ") +
+         "or use a larger --tolerance if times have few digits";
+}
+
 /// [s] Times that differ by less are the same, whatever the tolerance is.
 constexpr double kSameTime = 1e-6;
 /// Gaps of the truth that are this many times as long as usual are no path.
@@ -61,13 +82,10 @@ std::size_t TruthPath::row_near(double time, const std::string& estimate) const 
   const double mismatch = std::abs(rows_.time[row] - time);
   if (mismatch <= match_.tolerance) return row;
   const bool is_inside = rows_.time.front() < time && time < rows_.time.back();
-  throw StudyError(estimate + " has no truth in " + path_.string() + " (the nearest is " +
+  throw StudyError(estimate + " has no " + name_of_other(match_.is_pair) + " in " + path_.string() +
+                   " (the nearest is that of " + to_text(rows_.time[row]) + " s, " +
                    to_text(mismatch) + " s away, --tolerance is " + to_text(match_.tolerance) +
-                   " s): " +
-                   (is_inside ? "give truths at the times of the estimates, or use --interpolate, "
-                                "or a larger --tolerance if times have few digits"
-                              : "leave out estimates outside of the truth, which --interpolate "
-                                "does, or use a larger --tolerance if times have few digits"));
+                   " s): " + remedy_of_time(is_inside, match_.is_pair));
 }
 
 /// The truth between the two rows around `time`; nullopt, counted in `use`, if there are none or
@@ -105,16 +123,19 @@ std::vector<std::optional<TrueState>> TruthPath::at(const StateRows& estimates,
                                                     TruthUse& use) const {
   std::vector<std::optional<TrueState>> found;
   std::optional<std::size_t> used;
-  for (const double time : estimates.time) {
-    const std::string estimate = path.string() + ": time " + to_text(time) + " s";
+  for (std::size_t k = 0; k < estimates.time.size(); ++k) {
+    const double time = estimates.time[k];
+    const std::string estimate =
+        place_of_row(path, estimates, k) + ": time " + to_text(time) + " s";
     if (match_.interpolate) {
       found.push_back(interpolated(time, estimate, use));
       continue;
     }
     const std::size_t row = row_near(time, estimate);
     if (used == row) {
-      throw StudyError(estimate + " and the time before have the same row of the truth (" +
-                       path_.string() + ", " + to_text(rows_.time[row]) +
+      throw StudyError(estimate + " and the time before have the same row of the " +
+                       name_of_other(match_.is_pair) + " (" + place_of_row(path_, rows_, row) +
+                       ", " + to_text(rows_.time[row]) +
                        " s): use --interpolate, or a smaller --tolerance");
     }
     used = row;
@@ -127,36 +148,37 @@ std::vector<std::optional<TrueState>> TruthPath::at(const StateRows& estimates,
   }
   const bool has_any = std::ranges::any_of(found, [](const auto& one) { return one.has_value(); });
   if (has_any || found.empty()) return found;
-  throw StudyError(path.string() + ": no estimate has a truth in " + path_.string() + " (" +
-                   to_text(estimates.time.front()) + " to " + to_text(estimates.time.back()) +
-                   " s here, " + to_text(rows_.time.front()) + " to " + to_text(rows_.time.back()) +
-                   " s there): give both the same clock");
+  throw StudyError(path.string() + ": no estimate has a " + name_of_other(match_.is_pair) + " in " +
+                   path_.string() + " (" + to_text(estimates.time.front()) + " to " +
+                   to_text(estimates.time.back()) + " s here, " + to_text(rows_.time.front()) +
+                   " to " + to_text(rows_.time.back()) + " s there): give both the same clock");
 }
 
-std::vector<std::string> TruthUse::notes() const {
+std::vector<std::string> TruthUse::notes(bool is_pair) const {
+  const std::string other = name_of_other(is_pair);
   std::vector<std::string> all;
   if (largest_mismatch > kSameTime) {
-    all.push_back("truths were taken up to " + to_text(largest_mismatch) + " s beside their " +
+    all.push_back(other + "s were taken up to " + to_text(largest_mismatch) + " s beside their " +
                   "estimates (" + of_mismatch + "): --interpolate takes them at their times");
   }
   if (in_gaps > 0) {
-    all.push_back(std::to_string(in_gaps) +
-                  " estimates lie in gaps of the truth and are missing (" + first_gap +
+    all.push_back(std::to_string(in_gaps) + " estimates lie in gaps of the " + other +
+                  " and are missing (" + first_gap +
                   "): --longest-gap SECONDS sets what is interpolated");
   }
   if (longest_crossed > 0.0) {
-    all.push_back("the truth was interpolated across a gap of " + to_text(longest_crossed) +
+    all.push_back("the " + other + " was interpolated across a gap of " + to_text(longest_crossed) +
                   " s, far longer than usual: its own error there counts as the estimate's");
   }
   if (interpolates_covariance) {
     all.push_back(
-        "between its rows the truth's errors were taken as those of its neighbours (they " +
-        std::string("change little from row to row): if they are independent, give truths "
-                    "at the times of the estimates"));
+        "between its rows the errors of the " + other + " were taken as those of its neighbours " +
+        "(they change little from row to row): if they are independent, give it at the times of "
+        "the estimates");
   }
   if (outside > 0) {
-    all.push_back(std::to_string(outside) + " estimates lie before or after the truth and are " +
-                  "missing, the first in " + first_outside);
+    all.push_back(std::to_string(outside) + " estimates lie before or after the " + other +
+                  " and are " + "missing, the first in " + first_outside);
   }
   return all;
 }
