@@ -38,7 +38,7 @@ double white_deviate(double level) { return normal_quantile(0.5 + 0.5 * level); 
 double white_deviate_of_nis(double level, double pairs, double components) {
   constexpr double kFewest = 40.0;  // fewer pairs have no long tail
   const double skewness = 8.0 / (components * std::sqrt(pairs));
-  const double corrected = std::max(0.0, 1.0 - kFewest / pairs) * skewness / (1.0 + skewness);
+  const double corrected = std::max(0.0, 1.0 - kFewest / pairs) * skewness / (1.0 + 0.5 * skewness);
   const double z = normal_quantile(level);
   return std::max(white_deviate(level), z + corrected * (z * z - 1.0) / 6.0);
 }

@@ -36,7 +36,8 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     is_bundled = _is_bundled(settings)
     system = sysconfig.get_platform()
     if is_bundled:
-        system = system.replace("linux", "manylinux_" + os.confstr("CS_GNU_LIBC_VERSION").split()[1])
+        glibc = os.confstr("CS_GNU_LIBC_VERSION").split()[1]
+        system = system.replace("linux", f"manylinux_{glibc}")
     stem, tag = _stem(), f"py3-none-{re.sub('[-.]', '_', system)}"
     name = f"{stem}-{tag}.whl"
     with tempfile.TemporaryDirectory() as prefix:

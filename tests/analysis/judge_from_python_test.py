@@ -112,9 +112,9 @@ class JudgeFromPython(unittest.TestCase):
 
     def test_judges_position_and_rotation_by_themselves(self):
         draw = np.random.default_rng(6)
-        errors = draw.standard_normal((40, 25, 6)) * [1, 1, 1, 3, 3, 3]
-        names = "x_m,y_m,z_m,rx_rad,ry_rad,rz_rad"
-        found = montecarta.judge(errors, np.broadcast_to(np.eye(6), (25, 6, 6)), names=names)
+        errors = 0.1 * draw.standard_normal((40, 25, 6)) * [1, 1, 1, 3, 3, 3]
+        P = np.broadcast_to(0.01 * np.eye(6), (25, 6, 6))
+        found = montecarta.judge(errors, P, names="x_m,y_m,z_m,rx_rad,ry_rad,rz_rad")
         self.assertEqual(list(found.blocks), ["position", "rotation"])
         self.assertNotEqual(found.blocks["position"].answer, "optimistic")
         self.assertEqual(found.blocks["rotation"].answer, "optimistic")

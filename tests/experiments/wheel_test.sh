@@ -51,10 +51,10 @@ if command -v patchelf >/dev/null; then
     --config-settings=libraries=bundled -w "$folder" "$source" || fail "pip wheel, bundled"
   bundled=$(ls "$folder"/montecarta-*-py3-none-manylinux_*.whl)
   pip install --no-index "$bundled" || fail "pip install, bundled"
-  foreign=$(ldd "$folder/env/bin/montecarta" | grep '=>' | grep -v "=> $folder/env/lib/" |
+  foreign=$(ldd "$folder/env/bin/montecarta" | grep '=>' | grep -v "=> $folder/env/" |
     grep -vE '^\s*lib(c|m|resolv|dl|rt|pthread)\.so' || true)
   [ -z "$foreign" ] || fail "libraries that are not in the wheel: $foreign"
-  [ -s "$(ls "$folder"/env/lib/python3*/site-packages/montecarta-*.dist-info/licenses/libhdf5*)" ] ||
+  grep -q HDF5 "$folder"/env/lib/python3*/site-packages/montecarta-*.dist-info/licenses/libhdf5* ||
     fail "no licences"
   rm -f first.h5
   "$folder/env/bin/python" judge.py "$folder/env/bin/montecarta" || fail "bundled"

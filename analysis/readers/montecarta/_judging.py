@@ -230,7 +230,8 @@ def judge(errors: ArrayLike, covariances: ArrayLike, times: ArrayLike | None = N
         number), whose ratio is `Judgement.nis`. NaN where nothing was observed.
     names : sequence of str, {d}, or a str with commas, optional
         Names of the components, with a unit, e.g. ["x_m", "heading_rad"]. Those of a pose in space
-        are x_m, y_m, z_m, rx_rad, ry_rad, rz_rad; then `Judgement.blocks` has position and rotation.
+        are x_m, y_m, z_m, rx_rad, ry_rad, rz_rad; then `Judgement.blocks` has position and
+        rotation.
     within : float, optional
         Margin [1]: ratios of squared errors from 1 / within to within are consistent.
     components : sequence of str, optional

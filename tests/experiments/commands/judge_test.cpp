@@ -200,7 +200,7 @@ TEST_F(Judge, PosesInSpaceAreJudgedAndCompared) {
 
 TEST_F(Judge, WrongInputIsNamed) {
   EXPECT_THAT(judged(kHeader + "1,0,0,0,1,0,0,0,1,0,0,0,1\n3,0,0,0,1,0,0,0,1,0,0,0,1\n").err,
-              HasSubstr("e_0.csv:4: time 3 s has no truth in truth.csv"));
+              HasSubstr("e_0.csv:3: time 3 s has no truth in truth.csv"));
   EXPECT_FALSE(exists("mine.h5") || exists("mine.h5.part"));
   EXPECT_THAT(judged("").err, HasSubstr("e_0.csv: empty"));
   EXPECT_THAT(

@@ -208,9 +208,9 @@ TEST_F(StateFiles, HaveTruthsAtTheTimesOfEstimatesOrBetween) {
     return TruthPath(rows, "truth.csv", match).at({.shape = shape, .time = times}, "est.csv", use);
   };
   EXPECT_EQ(at({1.0 + 1e-7}, {})[0]->state, Eigen::Vector2d(-3, 10));
-  EXPECT_THAT(use.notes(), IsEmpty());
+  EXPECT_THAT(use.notes(false), IsEmpty());
   EXPECT_EQ(at({0.1}, {.tolerance = 0.2})[0]->state, Eigen::Vector2d(3, 0));
-  EXPECT_THAT(use.notes(), ElementsAre(HasSubstr("up to 0.1 s beside their estimates (est.csv")));
+  EXPECT_THAT(use.notes(false), ElementsAre(HasSubstr("up to 0.1 s beside their estimates (est.csv")));
   const auto half = at({0.5}, {.interpolate = true})[0].value().state;
   EXPECT_NEAR(std::abs(half(0)), kPi, 1e-12);
   EXPECT_EQ(half(1), 5.0);
@@ -239,7 +239,7 @@ TEST_F(StateFiles, HaveNoTruthInAGapNorOutsideOfIt) {
   };
   TruthUse use, longer;
   EXPECT_THAT(known({.interpolate = true}, use), ElementsAre(1, 1, 0, 0, 1, 0));
-  EXPECT_THAT(use.notes(),
+  EXPECT_THAT(use.notes(false),
               ElementsAre(HasSubstr("2 estimates lie in gaps of the truth and are missing "
                                     "(truth.csv has no row from 3 to 30 s)"),
                           HasSubstr("1 estimates lie before or after the truth")));
