@@ -107,7 +107,7 @@ Panel nees_panel(const StudyAnalysis& study, ErrorBlock block) {
     dimension = nees->series.dimension;
     return scaled(nees->series.average, 1.0 / static_cast<double>(dimension));
   });
-  const bool is_bound = !study.imported.pair.empty();  // of which no law is known
+  const bool is_bound = study.imported.has_bounds();  // of which no law is known
   if (!panel.curves.empty() && !is_bound) panel.bands = bands(study, dimension);
   return panel;
 }
@@ -159,7 +159,7 @@ Figure anees_figure(const StudyAnalysis& study) {
   const Values whole = {{"whole", study.imported.name_of_whole()}};
   Values curve = whole;
   curve.emplace_back("level", level_text(study.level));
-  const bool is_bound = !study.imported.pair.empty();
+  const bool is_bound = study.imported.has_bounds();
   return nees_figure(study, {ErrorBlock::pose}, prose("consistency", "strips of whole", whole),
                      is_bound ? prose("consistency", "curves of bound", whole)
                               : prose("consistency", "curves of whole", curve),

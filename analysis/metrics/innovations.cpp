@@ -186,8 +186,8 @@ std::string correlated_words(const Innovations& found, const std::vector<std::st
     const ComponentCorrelation& one = found.components[k];
     if (one.is_white()) {
       if (one.has_bias() && found.whiteness() == Whiteness::white) {
-        words += "; " + names[k] + " has a mean of " + readable(one.mean, 2) + " +- " +
-                 readable(one.mean_bound, 2) + " deviations, where 0 is right";
+        words += "; " + names[k] + " has a bias (a mean of " + readable(one.mean, 2) + " +- " +
+                 readable(one.mean_bound, 2) + " deviations, where 0 is right)";
       }
       continue;
     }

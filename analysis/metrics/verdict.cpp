@@ -44,6 +44,7 @@ class VerdictOverRuns final : public MergedSums<VerdictOverRuns> {
     cell.verdict =
         judge(*sums_, {criteria_->components, criteria_->times}, analysis, ended, cell.complete);
     if (criteria_->by_upper_bounds) take_for_upper_bounds(cell.verdict);
+    cell.verdict.is_of_innovations = criteria_->innovation_components > 0;
     const NeesSeries& series = cell.nees.front().series;
     cell.verdict.samples = series.samples;
     cell.verdict.unusable = series.unusable;

@@ -23,8 +23,9 @@ struct ImportedState {
   std::string state;
   std::string convention;  ///< name of the convention of the error, among kErrorConventions
   std::string windows;  ///< [s] lengths of the windows whose increments are judged; empty if none
-  std::string gate;     ///< limit of the NIS of innovations that are left; empty if there is none
-  std::string moved;    ///< what was moved of the truths onto the first estimates; empty if nothing
+  bool bounds_increments = false;  ///< whether covariances of increments are only bounds
+  std::string gate;   ///< limit of the NIS of innovations that are left; empty if there is none
+  std::string moved;  ///< what was moved of the truths onto the first estimates; empty if nothing
   bool adds_truth_covariance = false;  ///< whether covariances of the truths were added
   /// The two estimators whose difference is judged, by the largest covariance that it can have;
   /// empty if errors are judged.
@@ -32,6 +33,8 @@ struct ImportedState {
   std::vector<std::string> components = {"x", "y", "heading"};
   std::vector<std::string> units = {"m", "m", "rad"};
 
+  /// Whether covariances are only bounds from above.
+  bool has_bounds() const { return !pair.empty() || bounds_increments; }
   bool is_imported() const { return !state.empty(); }
   /// Name of the whole whose error is judged: "pose", "state", "innovation", ...
   std::string name_of_whole() const;

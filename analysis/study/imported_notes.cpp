@@ -49,7 +49,8 @@ std::vector<std::string> imported_notes(const StudyAnalysis& study) {
              {"components", components_text(study)}})};
   if (!study.imported.windows.empty())
     notes = {prose("components", "windows",
-                   {{"windows", study.imported.windows}, {"components", components_text(study)}})};
+                   {{"windows", study.imported.windows}, {"components", components_text(study)}}),
+             prose("components", study.imported.bounds_increments ? "bounded" : "added")};
   if (!study.imported.pair.empty()) {
     notes.push_back(prose("components", "pair", {{"pair", study.imported.pair}}));
     return notes;

@@ -23,12 +23,24 @@ static_assert(kInnovationLags < kLagsTogether);
 /// together.
 constexpr double kFarthest = 5.0;
 
-/// The number of standard deviations that white innovations exceed at none of `lags` lags of the
-/// NIS and of each component, nor in the mean of a component (Sidak).
-double white_deviate(std::size_t lags, std::size_t components, double level) {
+/// The level of each test, if `lags` lags of the NIS and of each component, and the mean of each
+/// component, are judged together (Sidak).
+double level_of_each(std::size_t lags, std::size_t components, double level) {
   const auto tests = static_cast<double>(lags * (1 + components) + components);
-  const double each = std::pow(level, 1.0 / tests);
-  return normal_quantile(0.5 + 0.5 * each);
+  return std::pow(level, 1.0 / tests);
+}
+
+/// The number of standard deviations that white normal numbers do not exceed at this level.
+double white_deviate(double level) { return normal_quantile(0.5 + 0.5 * level); }
+
+/// The same of the correlation of the NIS over so many pairs, which are skewed (STATISTICS (9.2)):
+/// its long tail has all of the error.
+double white_deviate_of_nis(double level, double pairs, double components) {
+  constexpr double kFewest = 40.0;  // fewer pairs have no long tail
+  const double skewness = 8.0 / (components * std::sqrt(pairs));
+  const double corrected = std::max(0.0, 1.0 - kFewest / pairs) * skewness / (1.0 + 0.5 * skewness);
+  const double z = normal_quantile(level);
+  return std::max(white_deviate(level), z + corrected * (z * z - 1.0) / 6.0);
 }
 
 bool is_innovation(double nis, std::uint32_t dof) { return dof > 0 && std::isfinite(nis); }
@@ -164,7 +176,7 @@ std::vector<ComponentCorrelation> InnovationSums::correlated_components(std::uin
   for (std::size_t k = 0; k < all.size(); ++k) {
     all[k].mean = components_[k].mean();
     const std::size_t lags = components_[k].lags(runs);
-    const double deviate = white_deviate(lags, all.size(), level);
+    const double deviate = white_deviate(level_of_each(lags, all.size(), level));
     all[k].mean_bound = deviate / std::sqrt(components_[k].pairs(0));
     for (std::size_t lag = 1; lag <= lags; ++lag) {
       const ComponentCorrelation one{.lag = lag,
@@ -205,12 +217,15 @@ void InnovationSums::Totals::find_correlations(double level, Innovations& result
   result.autocorrelation.assign(kInnovationLags, kNaN);
   result.white_bound.assign(kInnovationLags, kNaN);
   const std::size_t lags = products_.lags(runs());
-  double farthest = 0.0;
+  const double each = level_of_each(lags, result.components.size(), level);
+  double freedom = 0.0, farthest = 0.0;
+  for (const SummedError::Scan& scan : nis_.scans()) freedom += scan.dimensions;
   for (std::size_t lag = 1; lag <= lags; ++lag) {
     const double correlation = products_.correlation(lag);
     if (std::isnan(correlation)) continue;
+    const double pairs = products_.pairs(lag);
     const double bound =
-        white_deviate(lags, result.components.size(), level) / std::sqrt(products_.pairs(lag));
+        white_deviate_of_nis(each, pairs, freedom / products_.pairs(0)) / std::sqrt(pairs);
     result.autocorrelation[lag - 1] = correlation;
     result.white_bound[lag - 1] = bound;
     if (result.worst_lag > 0 && std::abs(correlation) / bound <= farthest) continue;

@@ -443,7 +443,8 @@ std::string few_runs_words(const Verdict& verdict) {
   if (complete_runs(verdict) >= kFewestJudgedRuns) return "";
   const std::string fewer = "of fewer than " + std::to_string(kFewestJudgedRuns) + " runs ";
   if (verdict.find(Family::size) == nullptr) return fewer + "single scans alone are judged";
-  return fewer + "bias, correlations and stretches of the drive are not judged";
+  return fewer + (verdict.is_of_innovations ? "" : "bias, ") +
+         "correlations and stretches of the drive are not judged";
 }
 
 std::string consistent_words(const Verdict& verdict) {
@@ -490,8 +491,8 @@ std::string undecided_words(const Verdict& verdict) {
            "no fault and no consistency";
   }
   const std::uint64_t runs = complete_runs(verdict);
-  const std::string words = "undecided: " + std::to_string(runs) +
-                            (runs == 1 ? " run does" : " runs do") + " not show whether it is " +
+  const std::string words = "undecided: no fault is shown, and " + std::to_string(runs) +
+                            (runs == 1 ? " run is" : " runs are") + " too few to show that it is " +
                             within_words(verdict);
   return joined({words + open_part(verdict), few_runs_words(verdict), more_runs_words(verdict),
                  tail_words(verdict)});

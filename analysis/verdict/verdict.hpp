@@ -169,6 +169,8 @@ struct Verdict {
   /// Whether covariances are only bounds from above. Then errors that are too small are expected,
   /// nothing is shown to be consistent, and correlations and spreads say nothing.
   bool is_by_upper_bounds = false;
+  /// Whether errors are innovations, whose bias is judged beside it (Innovations::components).
+  bool is_of_innovations = false;
 
   /// Whether something is shown to be off: neither consistent nor undecided nor untested.
   bool has_finding() const;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/render/page/html.hpp"
 #include "analysis/study/study_analysis.hpp"
+#include "analysis/verdict/block_errors.hpp"
 #include "analysis/verdict/sentence.hpp"
 #include "analysis/verdict/verdict.hpp"
 #include "engine/core/judgement.hpp"
@@ -73,10 +74,22 @@ Json json_of(const Member& member, bool is_shown) {
           {"shown", is_shown}};
 }
 
+Json json_of(const analysis::BlockVerdict& block) {
+  return {{"name", block.name},
+          {"verdict", analysis::name_of(block.verdict.answer)},
+          {"estimate", rounded(block.verdict.ratio_estimate())},
+          {"interval", json_of(block.verdict.ratio())}};
+}
+
 /// JSON with all numbers on which the verdict rests. The scans are represented by the one with the
 /// least p-value.
-Json json_of(const std::string& label, const Verdict& verdict, const Allowance& allowed,
-             GateAnswer answer) {
+Json json_of(const CellAnalysis& cell, const Allowance& allowed, GateAnswer answer) {
+  const std::string& label = cell.label;
+  const Verdict& verdict = cell.verdict;
+  Json blocks = Json::array();
+  if (const auto* found = cell.find<std::vector<analysis::BlockVerdict>>()) {
+    for (const analysis::BlockVerdict& block : *found) blocks.push_back(json_of(block));
+  }
   Json families = Json::array();
   for (const FamilyTest& test : verdict.families) {
     Json members = Json::array();
@@ -103,7 +116,8 @@ Json json_of(const std::string& label, const Verdict& verdict, const Allowance& 
           {"unusable", verdict.unusable},
           {"unusable_allowed", allowed.unusable},
           {"missing", verdict.missing},
-          {"families", std::move(families)}};
+          {"families", std::move(families)},
+          {"blocks", std::move(blocks)}};
 }
 
 }  // namespace
@@ -126,7 +140,7 @@ int gate_command(const Arguments& arguments) {
   const GateAnswer answer = at_place(formatted("{}: cell {}", place, stored.label),
                                      [&] { return gate(cell.verdict, allowed); });
   if (arguments.has("json")) {
-    std::cout << json_of(stored.label, cell.verdict, allowed, answer).dump(2) << "\n";
+    std::cout << json_of(cell, allowed, answer).dump(2) << "\n";
   } else {
     std::cout << wrapped(sentence(stored.label, cell.verdict) + too_many(cell.verdict, allowed),
                          output_width());

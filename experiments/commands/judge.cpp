@@ -123,8 +123,8 @@ std::unique_ptr<EstimateSource> arrays_of(const Arguments& arguments) {
   refuse_options(arguments, kOfFiles,
                  operands.front() + " (arrays have all of their numbers in the file)");
   const std::string stem = std::filesystem::path(operands.front()).stem().string();
-  auto arrays =
-      std::make_unique<EstimateArrays>(operands.front(), arguments.text("cell").value_or(stem));
+  auto arrays = std::make_unique<EstimateArrays>(
+      operands.front(), arguments.text("cell").value_or(stem), arguments.text("names"));
   constexpr std::array<std::string_view, 2> kOfStates = {"error", "anchor"};
   if (arrays->has_errors()) {
     refuse_options(arguments, kOfStates, operands.front() + " (it has errors, and no states)");
@@ -147,12 +147,12 @@ std::unique_ptr<EstimateSource> pair_of(const Arguments& arguments,
                                         const EstimateFiles::Reading& how, std::string& pair) {
   constexpr std::array<std::string_view, 4> kOfTruths = {"truth", "truth-cov", "anchor", "cell"};
   refuse_options(arguments, kOfTruths, "--pair (an estimator is in place of the truth)");
-  JudgedFiles files = pair_files(arguments.operands(), {}, std::nullopt);
+  JudgedFiles files = files_of_pair(arguments.operands());
   if (files.cells.size() != 2) {
     throw StudyError(
-        "--pair: needs two estimators ({} {} found): name the files of both, as montecarta judge "
-        "--help shows",
-        files.cells.size(), files.cells.size() == 1 ? "was" : "were");
+        "--pair: needs two estimators ({}{} found): name the files of both, one of each or all "
+        "runs of each",
+        files.cells.size(), files.cells.size() == 1 ? " was" : " were");
   }
   EstimatorFiles& first = files.cells.front();
   pair = formatted("{} and {}", first.cell, files.cells.back().cell);
@@ -168,11 +168,15 @@ std::unique_ptr<EstimateSource> source_of(const Arguments& arguments, JudgingOpt
   const std::vector<std::string>& operands = arguments.operands();
   if (h5::is_hdf5(operands.front())) return arrays_of(arguments);
   const std::string ending = std::filesystem::path(operands.front()).extension().string();
-  if (ending == ".h5" || ending == ".hdf5" || ending == ".mat") {
+  if (ending == ".h5" || ending == ".hdf5" || ending == ".mat" || ending == ".npz") {
     throw StudyError(
-        "{}: is there no such file, or no HDF5 file (arrays are in one): give its name; convert a "
-        ".mat of version 7 by experiments/convert/estimates.py",
+        "{}: is there no such file, or no HDF5 file (arrays are in one): give its name; convert "
+        ".npz and a .mat of version 7 by experiments/convert/estimates.py, or call "
+        "montecarta.judge from Python",
         operands.front());
+  }
+  if (arguments.has("names")) {
+    throw StudyError("--names: needs an HDF5 file (a CSV file has a header): leave it out");
   }
   if (arguments.has("innovations")) return innovations_of(arguments, options);
   if (options.gate) {
@@ -182,7 +186,10 @@ std::unique_ptr<EstimateSource> source_of(const Arguments& arguments, JudgingOpt
   EstimateFiles::Reading how{.tolerance = options.match.tolerance,
                              .equal_times = options.equal_times,
                              .truth_covariance = true};
-  if (arguments.has("pair")) return pair_of(arguments, how, options.pair);
+  if (arguments.has("pair")) {
+    how.is_pair = options.match.is_pair = true;
+    return pair_of(arguments, how, options.pair);
+  }
   const std::vector<std::string> truths = arguments.texts("truth");
   how.own_truth = own_truth_of(operands.front(), truths);
   if (how.own_truth == OwnTruth::errors) {
@@ -209,7 +216,9 @@ int judge_command(const Arguments& arguments) {
     constexpr std::array<std::string_view, 4> kOfWhole = {"anchor", "pair", "truth-cov",
                                                           "innovations"};
     refuse_options(arguments, kOfWhole, "--windows (it judges increments of poses by their truth)");
-    source = std::make_unique<Increments>(std::move(source), options);
+    auto increments = std::make_unique<Increments>(std::move(source), options);
+    options.bounds_increments = increments->are_bounded();
+    source = std::move(increments);
   }
   const std::vector<std::string> notes = judge_estimates(*source, options);
   const ResultFile file(options.output);

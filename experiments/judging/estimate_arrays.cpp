@@ -54,7 +54,8 @@ const ArrayFile& not_a_result(const ArrayFile& file, const std::filesystem::path
 
 }  // namespace
 
-EstimateArrays::EstimateArrays(std::filesystem::path path, std::string cell)
+EstimateArrays::EstimateArrays(std::filesystem::path path, std::string cell,
+                               const std::optional<std::string>& names)
     : path_(std::move(path)),
       file_(path_),
       cells_{std::move(cell)},
@@ -85,7 +86,7 @@ EstimateArrays::EstimateArrays(std::filesystem::path path, std::string cell)
   if (nis_dof_) require_axes(*nis_dof_, {runs, scans}, "{run, scan}");
   runs_.resize(runs);
   std::iota(runs_.begin(), runs_.end(), std::uint64_t{0});
-  shape_ = shape_of_names();
+  shape_ = shape_of_names(names);
 }
 
 /// Throws StudyError if MATLAB or Julia wrote the arrays, which turn the order of axes round.
@@ -144,22 +145,27 @@ void EstimateArrays::require_axes(const Array& array, const h5::Shape& wanted,
                 axes_text(array.shape), axes, axes_text(wanted)));
 }
 
-/// The shape of the state by the attribute `names`; without it the columns are e0, e1, ...
-StateShape EstimateArrays::shape_of_names() const {
+/// The shape of the state by names, or else by the attribute `names`; without it the columns are
+/// e0, e1, ...
+StateShape EstimateArrays::shape_of_names(const std::optional<std::string>& given) const {
   const auto width = static_cast<std::size_t>(states_.shape[2]);
   const auto d = static_cast<std::size_t>(covariance_.shape[2]);
   std::vector<std::string> columns;
-  if (const auto names = file_.texts("names")) {
+  if (given) {
+    columns = split(*given, ',');
+  } else if (const auto names = file_.texts("names")) {
     for (const std::string& text : *names) {
       for (const std::string& name : split(text, ',')) columns.push_back(name);
     }
     if (columns.empty()) refuse("names", "are no texts: write x_m,y_m or a list of texts");
   } else if (file_.has("names")) {
-    refuse("names", "is an array (an attribute is needed): write it as an attribute of the file");
+    refuse("names",
+           "is an array (a text attribute of the file is needed): write it as one, or give " +
+               std::string("--names"));
   } else if (!has_errors()) {
     refuse("names",
            "is missing (mean has columns, such as x_m,y_m,heading_rad): write it as a text "
-           "attribute of the file");
+           "attribute of the file, or give --names");
   } else {
     for (std::size_t k = 0; k < width; ++k) columns.push_back("e" + std::to_string(k));
   }

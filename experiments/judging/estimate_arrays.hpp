@@ -20,8 +20,10 @@ namespace montecarta::experiments {
 /// the columns of the state as in a CSV file. A scan whose numbers are all NaN is missing.
 class EstimateArrays final : public EstimateSource {
  public:
-  /// Throws StudyError if arrays are missing or their axes do not fit.
-  EstimateArrays(std::filesystem::path path, std::string cell);
+  /// `names` are those of the columns, with commas; by default the attribute's. Throws StudyError
+  /// if arrays are missing or their axes do not fit.
+  EstimateArrays(std::filesystem::path path, std::string cell,
+                 const std::optional<std::string>& names = {});
 
   const std::vector<std::string>& cells() const override { return cells_; }
   const std::vector<std::uint64_t>& runs() const override { return runs_; }
@@ -50,7 +52,7 @@ class EstimateArrays final : public EstimateSource {
   void require_axes(const Array& array, const h5::Shape& wanted, std::string_view axes) const;
   /// Throws StudyError that names the array.
   [[noreturn]] void refuse(const std::string& name, const std::string& reason) const;
-  StateShape shape_of_names() const;
+  StateShape shape_of_names(const std::optional<std::string>& names) const;
   /// The numbers of one run, or all if the array has no axis of runs.
   std::vector<double> numbers(const Array& array, std::size_t run) const;
   StateRows states_of(const Array& array, std::size_t run, const std::string& place) const;

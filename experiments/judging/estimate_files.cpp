@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/judging/estimate_files.hpp"
 
+#include "engine/errors.hpp"
 #include "engine/records/fingerprint.hpp"
 #include "experiments/files/files.hpp"
 #include "experiments/judging/innovation_rows.hpp"
@@ -43,6 +44,14 @@ StateRows EstimateFiles::estimates(std::size_t cell, std::size_t run) const {
 }
 
 StateRows EstimateFiles::truth(std::size_t cell, std::size_t run, const StateShape& shape) const {
+  if (how_.is_pair) {
+    const std::filesystem::path path = truth_place(cell, run);
+    StateRows other = read_estimates(path, how_.equal_times);
+    if (other.shape == shape && !other.time.empty()) return other;
+    throw StudyError(path.string() + (other.time.empty() ? ": no rows" : ": another state") + " (" +
+                     place(cell, run).string() + " has " + joined(shape.columns, ",") +
+                     ", and both are compared): give both estimators the same state and times");
+  }
   return read_truth(truth_place(cell, run), shape,
                     {.equal = how_.equal_times,
                      .with_covariance = how_.truth_covariance,

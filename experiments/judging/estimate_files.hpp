@@ -18,6 +18,7 @@ class EstimateFiles : public EstimateSource {
     EqualTimes equal_times = EqualTimes::refuse;
     OwnTruth own_truth = OwnTruth::none;
     bool truth_covariance = false;  ///< whether truths have covariances, which are read
+    bool is_pair = false;           ///< whether truths are the files of a second estimator
   };
   EstimateFiles(JudgedFiles files, const Reading& how);
 

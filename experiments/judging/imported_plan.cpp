@@ -54,6 +54,7 @@ TextPairs import_settings(const StateShape& shape, const JudgingOptions& options
     std::vector<std::string> windows;
     for (const double window : options.windows) windows.push_back(to_text(window));
     settings.emplace_back("windows", joined(windows));
+    if (options.bounds_increments) settings.emplace_back("increments", "bounded");
   }
   if (options.anchor) {
     settings.emplace_back("anchor", name_of(*options.anchor));

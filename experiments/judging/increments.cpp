@@ -2,6 +2,8 @@
 #include "experiments/judging/increments.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
+#include "experiments/judging/difference_bound.hpp"
 #include "experiments/judging/error_convention.hpp"
 #include "experiments/judging/run_files.hpp"
 #include "experiments/text/words.hpp"
@@ -91,10 +93,16 @@ StateShape shape_of_increments(const StateShape& poses) {
   return shape;
 }
 
+/// Which covariance an increment has.
+enum class IncrementCovariance : std::uint8_t {
+  added,  ///< that at its end without that at its start (STATISTICS (19.6))
+  bound   ///< what its error cannot exceed (19.5)
+};
+
 /// Adds the error and covariance of the increment from row `from` to row `to`.
 void add_increment(const StateRows& poses, const std::vector<std::optional<TrueState>>& truths,
                    std::size_t from, std::size_t to, ErrorConvention convention,
-                   StateRows& increments) {
+                   IncrementCovariance kind, StateRows& increments) {
   static const StateShape space = {.kind = StateKind::pose_in_space,
                                    .columns = std::vector<std::string>(kPoseWidth),
                                    .components = std::vector<std::string>(kPoseComponents),
@@ -105,10 +113,14 @@ void add_increment(const StateRows& poses, const std::vector<std::optional<TrueS
   const Eigen::VectorXd error =
       error_of(space, ErrorConvention::body, state_of(mean), state_of(truth));
   const Matrix6 carried = adjoint(reversed(mean));
-  const Matrix6 P = covariance_in_body(poses, to, convention) -
-                    carried * covariance_in_body(poses, from, convention) * carried.transpose();
   const auto places = components_in_space(poses.shape);
-  const Eigen::MatrixXd judged = P(places, places);
+  const auto judged_part = [&](const Matrix6& P) { return Eigen::MatrixXd(P(places, places)); };
+  const Eigen::MatrixXd end = judged_part(covariance_in_body(poses, to, convention));
+  const Eigen::MatrixXd start =
+      judged_part(carried * covariance_in_body(poses, from, convention) * carried.transpose());
+  const Eigen::MatrixXd judged = kind == IncrementCovariance::added
+                                     ? Eigen::MatrixXd(end - start)
+                                     : largest_covariance_of_difference(end, start);
   increments.time.push_back(poses.time[to]);
   increments.line.push_back(poses.line[to]);
   increments.state.emplace_back(error(places));
@@ -118,7 +130,7 @@ void add_increment(const StateRows& poses, const std::vector<std::optional<TrueS
 /// Increments over windows that follow each other; a window with a gap of the estimates or of their
 /// truth is left out.
 StateRows increments_of(const StateRows& poses, const std::vector<std::optional<TrueState>>& truths,
-                        double window, ErrorConvention convention) {
+                        double window, ErrorConvention convention, IncrementCovariance kind) {
   constexpr double kRounding = 1e-6, kLongest = 1.5;  // [s], in windows
   StateRows increments{.shape = shape_of_increments(poses.shape)};
   std::optional<std::size_t> from;
@@ -127,7 +139,7 @@ StateRows increments_of(const StateRows& poses, const std::vector<std::optional<
     const double elapsed = from ? poses.time[row] - poses.time[*from] : 0.0;
     if (from && elapsed < window - kRounding) continue;
     if (from && elapsed <= kLongest * window)
-      add_increment(poses, truths, *from, row, convention, increments);
+      add_increment(poses, truths, *from, row, convention, kind, increments);
     from = row;
   }
   return increments;
@@ -145,10 +157,27 @@ Increments::Increments(std::unique_ptr<EstimateSource> poses, const JudgingOptio
   convention_ = stated_error(shape, poses_->place(0, 0), options.convention);
   for (const std::string& label : poses_->cells()) {
     for (const double window : windows_) {
-      labels_.push_back(label + "." + to_text(window) + "s");
+      labels_.push_back(formatted("{}.{}s", label, to_text(window)));
       check_label(labels_.back());
     }
   }
+  are_bounded_ = are_corrected();
+}
+
+/// Whether more than a few increments have no covariance that was added: then estimates were
+/// corrected after their start.
+bool Increments::are_corrected() const {
+  constexpr double kMostShare = 0.01;
+  double all = 0.0, without = 0.0;
+  for (std::size_t cell = 0; cell < labels_.size(); ++cell) {
+    for (std::size_t run = 0; run < runs().size(); ++run) {
+      for (const Eigen::MatrixXd& P : estimates(cell, run).covariance) {
+        all += 1.0;
+        without += is_covariance(P) ? 0.0 : 1.0;
+      }
+    }
+  }
+  return without > kMostShare * all;
 }
 
 std::filesystem::path Increments::place(std::size_t cell, std::size_t run) const {
@@ -165,12 +194,13 @@ StateRows Increments::estimates(std::size_t cell, std::size_t run) const {
                         match_);
   use_ = {};  // what is said of one file is said of its last reading
   return increments_of(poses, truth.at(poses, place(cell, run), use_),
-                       windows_[cell % windows_.size()], convention_);
+                       windows_[cell % windows_.size()], convention_,
+                       are_bounded_ ? IncrementCovariance::bound : IncrementCovariance::added);
 }
 
 std::vector<std::string> Increments::notes() const {
   std::vector<std::string> notes = poses_->notes();
-  const std::vector<std::string> of_truth = use_.notes();
+  const std::vector<std::string> of_truth = use_.notes(false);
   notes.insert(notes.end(), of_truth.begin(), of_truth.end());
   return notes;
 }

@@ -50,6 +50,18 @@ bool is_of_sensor(const CsvRows& file, const EstimateFields& fields, const std::
   return sensor.empty() || (fields.sensor && file.field(*fields.sensor) == sensor);
 }
 
+/// Throws StudyError if a sensor lacks a component that another one has.
+void require_components(const CsvRows& file, const EstimateFields& fields) {
+  if (!fields.sensor || fields.nis) return;
+  for (std::size_t k = 0; k < fields.state.size(); ++k) {
+    if (!file.field(fields.state[k]).empty()) continue;
+    file.refuse(
+        formatted("sensor {} has no {} (the sensors of a file have the same components): give each "
+                  "sensor files of its own, or write time_s,sensor,nis,nis_dof",
+                  file.field(*fields.sensor), fields.shape.columns[k]));
+  }
+}
+
 /// The NIS of a row, as it would be without the gate.
 double without_gate(const CsvRows& file, double nis, std::uint32_t dof,
                     const std::optional<Gate>& gate) {
@@ -97,6 +109,7 @@ class InnovationsOfRows {
       kept.state.emplace_back(sum_[k] / std::sqrt(count_[k]));
       kept.covariance.emplace_back(covariance_[k] / count_[k]);
     }
+    kept.uncorrelated = rows.uncorrelated;
     kept.unwrapped_innovations = rows.unwrapped_innovations;
     kept.first_unwrapped = rows.first_unwrapped;
     rows = std::move(kept);
@@ -151,6 +164,7 @@ void read_innovations(const fs::path& path, const fs::path& estimates, double to
   while (file.next()) {
     const double time = file.time(CsvRows::Order::not_earlier);
     if (!is_of_sensor(file, fields, choice.sensor)) continue;
+    require_components(file, fields);
     const auto [as_given, row_dof] = nis_in(file, fields);
     const double row_nis = without_gate(file, as_given, row_dof, choice.gate);
     count_unwrapped(file, fields, rows);
@@ -165,6 +179,7 @@ void read_innovations(const fs::path& path, const fs::path& estimates, double to
   }
   rows.nis = std::move(nis);
   rows.nis_dof = std::move(dof);
+  rows.uncorrelated = fields.uncorrelated;
   if (has_components) components.put(rows);
 }
 

@@ -5,9 +5,11 @@
 #include "engine/errors.hpp"
 #include "engine/formatted.hpp"
 #include "engine/records/posix_file.hpp"
+#include "experiments/judging/difference_bound.hpp"
 #include "experiments/judging/imported_plan.hpp"
 #include "experiments/judging/likely_mistakes.hpp"
 #include "experiments/judging/scan_clock.hpp"
+#include "experiments/judging/unusable_rows.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>
@@ -305,6 +307,8 @@ struct RunNotes {
   SeenInnovations seen = {};
   LikelyMistakes mistakes;
   TruthUse use = {};
+  std::string uncorrelated = {};            ///< which covariances the first such file does not have
+  std::vector<UnusableRows> unusable = {};  ///< {cell}
   std::uint64_t missing = 0;
 
   /// A note on covariances that describe more than the error since the anchor.
@@ -320,8 +324,14 @@ struct RunNotes {
 
   std::vector<std::string> all(const EstimateSource& source, const Overview& overview) const {
     std::vector<std::string> notes = source.notes();
-    for (const auto& some : {unwrapped.notes(), notes_on_times(overview, missing), use.notes(),
-                             notes_on_anchor(), mistakes.notes()}) {
+    if (!uncorrelated.empty()) notes.push_back(uncorrelated);
+    for (const auto& some :
+         {unwrapped.notes(), notes_on_times(overview, missing), use.notes(options->match.is_pair),
+          notes_on_anchor(), mistakes.notes()}) {
+      notes.insert(notes.end(), some.begin(), some.end());
+    }
+    for (std::size_t c = 0; c < unusable.size(); ++c) {
+      const std::vector<std::string> some = unusable[c].notes(source.cells()[c]);
       notes.insert(notes.end(), some.begin(), some.end());
     }
     return notes;
@@ -343,26 +353,6 @@ void remove_first(StateRows& rows, Truths& truths) {
   remove_from(truths);
 }
 
-bool is_covariance(const Eigen::MatrixXd& P) {
-  return analysis::imported_nees(Eigen::VectorXd::Zero(P.rows()), P).is_usable();
-}
-
-/// The covariance {d, d} that no difference of two errors with the covariances `a` and `b` exceeds,
-/// whatever their correlation is (Young): (1 + t) a + (1 + 1/t) b, with a t that makes it small.
-Eigen::MatrixXd largest_covariance_of_difference(const Eigen::MatrixXd& a,
-                                                 const Eigen::MatrixXd& b) {
-  double share_a = 0.0, share_b = 0.0;
-  for (Eigen::Index i = 0; i < a.rows(); ++i) {
-    const double sum = a(i, i) + b(i, i);
-    if (!(sum > 0.0)) continue;
-    share_a += a(i, i) / sum;
-    share_b += b(i, i) / sum;
-  }
-  if (!(share_a > 0.0 && share_b > 0.0)) return a + b;
-  const double t = std::sqrt(share_b / share_a);
-  return (1.0 + t) * a + (1.0 + 1.0 / t) * b;
-}
-
 /// The truths {row} of a run, moved onto its anchor if there is one, which `rows` lose. The
 /// covariances of their own errors are added to those of `rows`.
 std::vector<std::optional<TrueState>> truths_for(StateRows& rows, const fs::path& path,
@@ -381,6 +371,10 @@ std::vector<std::optional<TrueState>> truths_for(StateRows& rows, const fs::path
     if (!truths[row] || truths[row]->covariance.size() == 0) continue;
     if (!is_covariance(rows.covariance[row])) continue;  // which is a fault of the estimate
     const Eigen::MatrixXd& other = truths[row]->covariance;
+    if (!is_covariance(other)) {  // of the second estimator of a pair
+      rows.covariance[row] = other;
+      continue;
+    }
     rows.covariance[row] = notes.options->pair.empty()
                                ? Eigen::MatrixXd(rows.covariance[row] + other)
                                : largest_covariance_of_difference(rows.covariance[row], other);
@@ -406,6 +400,11 @@ std::vector<MatchedRows> matched_run(const EstimateSource& source, std::size_t r
     const fs::path path = source.place(c, run);
     StateRows rows = source.estimates(c, run);
     notes.unwrapped.add(rows);
+    if (notes.uncorrelated.empty() && !rows.uncorrelated.empty()) {
+      notes.uncorrelated = path.string() + ": no covariance " + rows.uncorrelated +
+                           " is given, and counts as 0: if there is one, the verdict may call it "
+                           "an unreported correlation";
+    }
     if (notes.options->are_innovations) notes.seen.refuse_repeat(c, rows, path);
     require_alike(rows, path, all.rows, all.path);
     if (!truth || !source.has_common_truths()) {
@@ -424,6 +423,18 @@ std::vector<MatchedRows> matched_run(const EstimateSource& source, std::size_t r
   return cells;
 }
 
+/// Adds the rows of a run whose judged covariance is none, which `record` counts as faults.
+void add_unusable(const MatchedRows& run, const fs::path& path,
+                  const std::vector<Eigen::Index>& judged, RunRecord& record,
+                  UnusableRows& unusable) {
+  const auto faults = record.column<std::uint32_t>(*record.layout().find("numerical_faults"));
+  for (std::size_t row = 0; row < run.scans.size(); ++row) {
+    if (faults[run.scans[row]] == 0) continue;
+    unusable.add(run.rows.covariance[row](judged, judged),
+                 path.string() + ":" + std::to_string(run.rows.line[row]));
+  }
+}
+
 /// Whether estimates that begin far from their truth are likely seen from another frame.
 bool compares_starts(const JudgingOptions& options) {
   return !options.anchor && options.pair.empty() && !options.adds_truth_covariance &&
@@ -436,9 +447,10 @@ std::vector<std::string> write_runs(const EstimateSource& source, const JudgingO
   if (!has_states(all)) return write_innovations(source, all, plan, writer);
   const std::vector<RecordLayout> layouts = layouts_of(plan, Detail::usual);
   const auto judged = judged_components(all.rows.shape, options.components);
-  RunNotes notes{
-      .options = &options,
-      .mistakes = LikelyMistakes(source.cells(), *options.convention, compares_starts(options))};
+  RunNotes notes{.options = &options,
+                 .mistakes = LikelyMistakes(source.cells(), *options.convention,
+                                            compares_starts(options), options.match.is_pair)};
+  notes.unusable.resize(source.cells().size());
   for (std::size_t run = 0; run < source.runs().size(); ++run) {
     const auto cells = matched_run(source, run, all, notes);
     std::vector<Pose> scan_truths;
@@ -449,6 +461,7 @@ std::vector<std::string> write_runs(const EstimateSource& source, const JudgingO
     }
     for (std::size_t c = 0; c < cells.size(); ++c) {
       RunRecord record = record_of(layouts[c], cells[c], scan_truths, *options.convention, judged);
+      add_unusable(cells[c], source.place(c, run), judged, record, notes.unusable[c]);
       if (options.have_own_scans()) {
         record.mark_complete(kUnknownCost);
       } else {

@@ -96,8 +96,8 @@ std::string remaining(const StateShape& shape, const std::vector<std::string>& n
 }  // namespace
 
 LikelyMistakes::LikelyMistakes(std::span<const std::string> cells, ErrorConvention convention,
-                               bool compares_starts)
-    : convention_(convention), compares_starts_(compares_starts) {
+                               bool compares_starts, bool is_pair)
+    : convention_(convention), compares_starts_(compares_starts), is_pair_(is_pair) {
   for (const std::string& label : cells) cells_.emplace_back().label = label;
 }
 
@@ -226,19 +226,20 @@ void LikelyMistakes::add_marks(const OfCell& cell, std::vector<std::string>& not
   }
 }
 
-void LikelyMistakes::add_notes(const OfCell& cell, std::vector<std::string>& notes) {
+void LikelyMistakes::add_notes(const OfCell& cell, std::vector<std::string>& notes) const {
+  const std::string other = is_pair_ ? "second estimates" : "truth";
   add_marks(cell, notes);
   for (std::size_t k = 0; k < cell.w_first.size(); ++k) {
     constexpr double kMuchNearer = 0.2;
-    const Misfit &stated = cell.as_stated, &other = cell.w_first[k];
-    if (!(other.angle < kMuchNearer * stated.angle)) continue;
+    const Misfit &stated = cell.as_stated, &swapped = cell.w_first[k];
+    if (!(swapped.angle < kMuchNearer * stated.angle)) continue;
     const auto mean = [&](double sum) { return compact(sum / static_cast<double>(cell.rows)); };
     notes.push_back(
         formatted("{}: the quaternions of the {} may be written with w first, under the header "
-                  "qx,qy,qz,qw (then rotations would be {} rad from the truth on average, with a "
-                  "NEES ratio of {}, and are {} rad): write x, y, z, w",
-                  cell.label, k == 0 ? "estimates" : "truth", mean(other.angle), mean(other.nees),
-                  mean(stated.angle)));
+                  "qx,qy,qz,qw (then rotations would be {} rad from the {} on average, with a NEES "
+                  "ratio of {}, and are {} rad): write x, y, z, w",
+                  cell.label, k == 0 ? "estimates" : other, mean(swapped.angle), other,
+                  mean(swapped.nees), mean(stated.angle)));
   }
   if (const std::string velocities = unturned_velocities(cell.shape); !velocities.empty()) {
     notes.push_back(
@@ -255,9 +256,9 @@ void LikelyMistakes::add_notes(const OfCell& cell, std::vector<std::string>& not
   }
   if (10 * cell.later_copies > cell.rows) {  // the first row may be known exactly
     notes.push_back(
-        formatted("{}: the estimates equal the truth, number by number, in {}, the first in {}: "
-                  "are they a copy of it?",
-                  cell.label, of_rows(cell.copies, cell.rows), cell.first_copy));
+        formatted("{}: the estimates equal the {}, number by number, in {}, the first in {}{}",
+                  cell.label, other, of_rows(cell.copies, cell.rows), cell.first_copy,
+                  is_pair_ ? ": is one file a copy of the other?" : ": are they a copy of it?"));
   }
 }
 

@@ -20,9 +20,10 @@ namespace montecarta::experiments {
 class LikelyMistakes {
  public:
   /// The errors of the estimates are those of `convention`. `compares_starts` says whether a run
-  /// that begins far from its truth is a mistake.
+  /// that begins far from its truth is a mistake, `is_pair` whether truths are the estimates of a
+  /// second estimator.
   LikelyMistakes(std::span<const std::string> cells, ErrorConvention convention,
-                 bool compares_starts);
+                 bool compares_starts, bool is_pair);
 
   /// Adds the truth of a run. Throws StudyError if angles are in another unit than their columns
   /// say.
@@ -77,10 +78,10 @@ class LikelyMistakes {
   static void compare_starts(const StateRows& rows, const std::filesystem::path& path,
                              const StateRows& truth, OfCell& cell);
   static void add_marks(const OfCell& cell, std::vector<std::string>& notes);
-  static void add_notes(const OfCell& cell, std::vector<std::string>& notes);
+  void add_notes(const OfCell& cell, std::vector<std::string>& notes) const;
 
   ErrorConvention convention_;
-  bool compares_starts_;
+  bool compares_starts_, is_pair_;
   std::vector<OfCell> cells_;
   std::filesystem::path truth_path_;  ///< file of the last truth
   std::uint64_t left_out_ = 0;        ///< number of rows of one time that were not kept

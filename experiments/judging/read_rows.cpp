@@ -38,7 +38,7 @@ bool take_time(CsvRows& file, EqualTimes equal, StateRows& rows) {
 StateRows read_estimates(const std::filesystem::path& path, EqualTimes equal) {
   CsvRows file(path);
   const EstimateFields fields = estimate_fields(file.columns(), file.place());
-  StateRows rows{fields.shape, {}, {}, {}, {}, {}};
+  StateRows rows{.shape = fields.shape, .uncorrelated = fields.uncorrelated};
   while (file.next()) {
     if (!take_time(file, equal, rows)) continue;
     rows.state.push_back(state_in(file, fields.state, fields.shape));

@@ -219,6 +219,36 @@ JudgedFiles pair_files(const std::vector<std::string>& estimates,
   return judged;
 }
 
+JudgedFiles files_of_pair(const std::vector<std::string>& files) {
+  if (files.size() != 2) return pair_files(files, {}, std::nullopt);
+  const fs::path a = files[0], b = files[1];
+  if (a == b) {
+    throw StudyError(
+        "--pair: {} is named twice (two estimators are compared): name the files of both", a);
+  }
+  const std::vector<NumberedFile> numbered = numbered_files({a, b});
+  if (numbered[0].rest == numbered[1].rest) return pair_files(files, {}, std::nullopt);
+  fs::path of_a = a, of_b = b;
+  while (of_a.stem() == of_b.stem() && of_a.has_parent_path() && of_b.has_parent_path()) {
+    of_a = of_a.parent_path();
+    of_b = of_b.parent_path();
+  }
+  if (of_a.stem() == of_b.stem()) {
+    throw StudyError(
+        "--pair: {} and {} have the same names (two estimators are compared): give them other "
+        "names",
+        a, b);
+  }
+  JudgedFiles judged;
+  judged.runs = {0};
+  for (const auto& [of, file] : {std::pair(of_a, a), std::pair(of_b, b)}) {
+    check_label(of.stem().string());
+    judged.cells.push_back({of.stem().string(), {file}});
+  }
+  judged.truth = judged.cells.back().of_run;
+  return judged;
+}
+
 std::string note_on_names(const JudgedFiles& files) {
   constexpr std::size_t kMostNames = 8;  // shown
   if (files.names.empty()) return "";

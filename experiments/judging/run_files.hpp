@@ -33,6 +33,11 @@ JudgedFiles pair_files(const std::vector<std::string>& estimates,
                        const std::vector<std::string>& truths,
                        const std::optional<std::string>& cell);
 
+/// The files of two estimators (judge --pair), each in the place of its truth. Two files that are
+/// not alike are two estimators with one run each, whatever numbers are in their names; they are
+/// called by their files or, if these have the same name, by their folders.
+JudgedFiles files_of_pair(const std::vector<std::string>& files);
+
 /// Throws StudyError if a cell cannot be called `label`.
 void check_label(const std::string& label);
 

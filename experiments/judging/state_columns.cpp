@@ -4,10 +4,13 @@
 #include "analysis/run/nees.hpp"
 #include "engine/errors.hpp"
 #include "engine/formatted.hpp"
+#include "experiments/judging/column_names.hpp"
+#include "experiments/judging/covariance_columns.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <iterator>
 #include <map>
@@ -15,8 +18,6 @@
 
 namespace montecarta::experiments {
 namespace {
-
-using Names = std::vector<std::string>;
 
 const StateShape& pose_in_space_shape() {
   static const StateShape shape = {StateKind::pose_in_space,
@@ -28,69 +29,8 @@ const StateShape& pose_in_space_shape() {
 
 /// The velocity beside a pose in space.
 const Names kVelocityColumns = {"vx_mps", "vy_mps", "vz_mps"};
-const std::string kCovariancePrefix = "cov_";
-const Names kPoseColumns = {"x_m", "y_m", "heading_rad"};
-/// Other names of the heading, each followed by _rad.
-const Names kOtherHeadings = {"yaw", "theta", "psi", "phi"};
 const std::string kHeadingColumn = kPoseColumns.back();
 const Names kQuaternionColumns = {"qx", "qy", "qz", "qw"};
-const std::string kNis = "nis", kNisDof = "nis_dof", kSensor = "sensor";
-constexpr std::array kKnownUnits = {"m", "rad", "mps", "mps2", "radps", "s"};
-/// Columns that need a unit. Otherwise angles might be in degrees, and a heading would not be
-/// wrapped.
-const Names kNeedUnit = {"x", "y", "z", "heading", "yaw", "pitch", "roll", "theta", "phi", "psi"};
-
-bool is_of_state(const std::string& name) {
-  return name != kTimeColumn && name != kNis && name != kNisDof && name != kSensor &&
-         !name.starts_with(kCovariancePrefix);
-}
-
-bool has_name(const Names& names, const std::string& name) {
-  return std::ranges::find(names, name) != names.end();
-}
-
-/// The names of the state in a header, without those of a truth beside it.
-Names state_in_header(const Names& header) {
-  Names state;
-  std::ranges::copy_if(header, std::back_inserter(state), [&](const std::string& name) {
-    const bool is_of_truth =
-        name.starts_with(kTruthPrefix) && has_name(header, name.substr(kTruthPrefix.size()));
-    return is_of_state(name) && !is_of_truth;
-  });
-  return state;
-}
-
-std::size_t place_of_name(const Names& names, const std::string& name) {
-  return static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
-}
-
-/// The heading in the names of columns: heading_rad, or another name of it. Empty if there is none,
-/// or if there are several other names.
-std::string heading_in(const Names& columns) {
-  if (has_name(columns, kHeadingColumn)) return kHeadingColumn;
-  std::string found;
-  for (const std::string& name : kOtherHeadings) {
-    if (!has_name(columns, name + "_rad")) continue;
-    if (!found.empty()) return "";
-    found = name + "_rad";
-  }
-  return found;
-}
-
-/// The names of a state, where another name of the heading of a pose is replaced by its usual one.
-Names usual_names(Names state) {
-  const std::string heading = heading_in(state);
-  if (state.size() == kPoseColumns.size() && !heading.empty()) {
-    std::ranges::replace(state, heading, kHeadingColumn);
-  }
-  return state;
-}
-
-/// Index in a header of a column of a state of this kind; the size of the header if it has none.
-std::size_t place_of_column(const Names& header, const std::string& column, StateKind kind) {
-  const bool is_heading = kind == StateKind::pose && column == kHeadingColumn;
-  return place_of_name(header, is_heading ? heading_in(header) : column);
-}
 
 /// Throws StudyError if the first column is a time under another name.
 void refuse_other_time(const std::string& column, const std::string& place) {
@@ -125,41 +65,6 @@ void check_header(const Names& header, const std::string& place) {
           place, i + 1, excerpt(header[i]));
     }
   }
-}
-
-/// Throws StudyError if a column ends with the name of a unit that is not read.
-void refuse_other_units(const std::string& column, const std::string& component,
-                        const std::string& unit, const std::string& place) {
-  const Names degrees = {"deg", "degs", "degree", "degrees"}, radians = {"radian", "radians"},
-              metres = {"meter", "meters", "metre", "metres"}, lengths = {"mm", "cm", "km", "ft"};
-  if (has_name(degrees, unit)) {
-    throw StudyError("{}: '{}' is in degrees (angles are in rad): convert it and its covariance",
-                     place, excerpt(column));
-  }
-  const bool is_radians = has_name(radians, unit);
-  if (is_radians || has_name(metres, unit)) {
-    throw StudyError("{}: '{}' has a unit that is not read (rad and m are): rename it to {}{}",
-                     place, excerpt(column), component, is_radians ? "_rad" : "_m");
-  }
-  if (has_name(lengths, unit) && has_name(kNeedUnit, component)) {
-    throw StudyError("{}: '{}' is in {} (positions are in m): convert it and its covariance", place,
-                     excerpt(column), unit);
-  }
-}
-
-/// Component and unit in a column name such as "vx_mps".
-std::pair<std::string, std::string> component_and_unit(const std::string& column,
-                                                       const std::string& place) {
-  const std::size_t underscore = column.rfind('_');
-  const std::string unit = underscore == std::string::npos ? "" : column.substr(underscore + 1);
-  refuse_other_units(column, column.substr(0, underscore), unit, place);
-  if (has_name(kNeedUnit, column)) {
-    throw StudyError(
-        "{}: '{}' has no unit (m and rad are part of the name): write x_m, y_m, heading_rad", place,
-        column);
-  }
-  if (std::ranges::find(kKnownUnits, unit) == kKnownUnits.end()) return {column, "1"};
-  return {column.substr(0, underscore), unit};
 }
 
 bool is_same_set(Names a, Names b) {
@@ -234,113 +139,12 @@ StateShape shape_of(const Names& state, const std::string& place) {
   return shape;
 }
 
-/// Row and column of the covariance for every name that an element may have in the header.
-std::map<std::string, std::pair<std::size_t, std::size_t>> names_of_elements(
-    const Names& header, const StateShape& shape) {
-  std::map<std::string, std::pair<std::size_t, std::size_t>> elements;
-  const auto add = [&](const Names& components) {
-    for (std::size_t i = 0; i < components.size(); ++i) {
-      for (std::size_t j = 0; j < components.size(); ++j) {
-        elements[formatted("{}{}_{}", kCovariancePrefix, components[i], components[j])] = {i, j};
-      }
-    }
-  };
-  Names indices, own = shape.components;
-  for (std::size_t i = 0; i < own.size(); ++i) indices.push_back(std::to_string(i));
-  add(indices);
-  add(own);
-  if (shape.kind == StateKind::pose) {
-    const std::string heading = heading_in(header);
-    own.back() = heading.substr(0, heading.rfind('_'));
-    add(own);
-  }
-  return elements;
-}
-
-/// Throws StudyError if an element of the covariance has indices, but a state of more than a pose
-/// in space has its columns in another order than that of its components.
-void refuse_indices_out_of_order(const Names& header, std::size_t field, const StateShape& shape,
-                                 const std::string& place) {
-  const bool has_index = header[field].find_first_of("0123456789", kCovariancePrefix.size()) ==
-                         kCovariancePrefix.size();
-  if (!has_index || shape.kind != StateKind::pose_in_space ||
-      shape.dimension() == static_cast<std::size_t>(kPoseComponents)) {
-    return;
-  }
-  if (state_in_header(header) == shape.columns) return;
-  throw StudyError(
-      "{}: '{}' has indices, but the state has not the order {} (so a component has no certain "
-      "number): write the names of components, or the columns in the order {}",
-      place, header[field], joined(shape.components, ","), joined(shape.columns, ","));
-}
-
-std::vector<std::size_t> covariance_fields(const Names& header, const StateShape& shape,
-                                           const std::string& place) {
-  const std::size_t d = shape.dimension();
-  const auto elements = names_of_elements(header, shape);
-  std::vector<std::optional<std::size_t>> found(d * d);
-  for (std::size_t f = 0; f < header.size(); ++f) {
-    if (!header[f].starts_with(kCovariancePrefix)) continue;
-    const auto element = elements.find(header[f]);
-    if (element == elements.end()) {
-      throw StudyError(
-          "{}: '{}' is no element of the covariance (its components are {}, or indices from 0): "
-          "write cov_{}_{} or cov_0_{}",
-          place, excerpt(header[f]), joined(shape.components), shape.components.front(),
-          shape.components.back(), d - 1);
-    }
-    refuse_indices_out_of_order(header, f, shape, place);
-    const auto [i, j] = element->second;
-    if (found[i * d + j]) {
-      throw StudyError("{}: '{}' is there by name and by index (which one is it?): remove one",
-                       place, header[f]);
-    }
-    found[i * d + j] = f;
-  }
-  std::vector<std::size_t> fields;
-  for (std::size_t i = 0; i < d; ++i) {
-    for (std::size_t j = 0; j < d; ++j) {
-      const auto& field = found[i * d + j] ? found[i * d + j] : found[j * d + i];
-      if (!field) {
-        throw StudyError(
-            "{}: no cov_{}_{} (a verdict needs the whole covariance, or one triangle of it): add "
-            "the column",
-            place, shape.components[i], shape.components[j]);
-      }
-      fields.push_back(*field);
-    }
-  }
-  return fields;
-}
-
-/// The fields of the covariance of a truth, which may have further elements. `columns` are without
-/// the prefix.
-std::vector<std::size_t> covariance_of_truth(Names columns, const StateShape& shape,
-                                             const std::string& place, const std::string& prefix) {
-  const bool is_in_order = usual_names(state_in_header(columns)) == shape.columns;
-  const auto elements = names_of_elements(columns, shape);
-  for (std::string& name : columns) {
-    if (!name.starts_with(kCovariancePrefix)) continue;
-    const bool has_index = name.find_first_of("0123456789") == kCovariancePrefix.size();
-    if (has_index && !is_in_order) {
-      throw StudyError(
-          "{}: '{}{}' has indices, but the truth has not the columns of the estimates in their "
-          "order (so a component has no certain number): write names, e.g. {}{}{}_{}",
-          place, prefix, name, prefix, kCovariancePrefix, shape.components.front(),
-          shape.components.front());
-    }
-    if (!elements.contains(name)) name.clear();  // of what is not estimated
-  }
-  return covariance_fields(
-      columns, shape,
-      formatted("{} (covariance of the truth{})", place,
-                prefix.empty() ? "" : formatted(", in columns {}cov_A_B", prefix)));
-}
-
 /// Number of columns of a state that are the truth of another.
 std::size_t columns_of_truth(const Names& header) {
   return static_cast<std::size_t>(std::ranges::count_if(header, [&](const std::string& name) {
-    const bool is_covariance = name.starts_with(kTruthPrefix + kCovariancePrefix);
+    const bool is_covariance =
+        name.starts_with(kTruthPrefix + kCovariancePrefix) ||
+        (name.starts_with(kTruthPrefix) && is_deviation(name.substr(kTruthPrefix.size()), header));
     return name.starts_with(kTruthPrefix) && !is_covariance;
   }));
 }
@@ -432,7 +236,7 @@ EstimateFields fields_of(const Names& header, const std::string& place) {
   }
   for (const std::string& column : fields.shape.columns)
     fields.state.push_back(place_of_column(header, column, fields.shape.kind));
-  fields.covariance = covariance_fields(header, fields.shape, place);
+  find_covariance(header, place, fields);
   return fields;
 }
 
@@ -444,7 +248,20 @@ EstimateFields estimate_fields(const Names& header, const std::string& place) {
       place, kSensor);
 }
 
+/// Throws StudyError if the column of sensors has another name.
+void refuse_other_sensor(const Names& header, const std::string& place) {
+  for (const std::string& name : header) {
+    std::string small = name;
+    std::ranges::transform(small, small.begin(), [](unsigned char c) { return std::tolower(c); });
+    const bool is_meant = has_name({kSensor, "sensors", "sensor_name", "sensor_id"}, small);
+    if (!is_meant || name == kSensor) continue;
+    throw StudyError("{}: '{}' is not the name of the column of sensors: rename it to {}", place,
+                     excerpt(name), kSensor);
+  }
+}
+
 EstimateFields innovation_fields(const Names& header, const std::string& place) {
+  refuse_other_sensor(header, place);
   EstimateFields fields;
   Names numbers = header;
   std::erase(numbers, kSensor);
@@ -453,9 +270,14 @@ EstimateFields innovation_fields(const Names& header, const std::string& place) 
     fields.nis = place_of_name(header, kNis);
     fields.nis_dof = place_of_name(header, kNisDof);
   } else if (has_name(header, kNis) || has_name(header, kNisDof)) {
-    throw StudyError(place +
-                     ": nis and other columns (innovations are either): write time_s,nis,nis_dof, "
-                     "or the components of the innovation and their covariance");
+    std::erase_if(numbers, [](const auto& name) {
+      return name == kTimeColumn || name == kNis || name == kNisDof;
+    });
+    throw StudyError(
+        "{}: {},{} {} (innovations have a size, or components and their covariance): write "
+        "time_s,nis,nis_dof, or leave them out",
+        place, kNis, kNisDof,
+        numbers.empty() ? "are not both there" : "beside " + joined(numbers, ","));
   } else {
     fields = fields_of(header, place);
   }
@@ -481,7 +303,7 @@ EstimateFields truth_fields(const Names& header, const StateShape& shape, const 
           place, prefix, column);
     }
   }
-  if (with_covariance) fields.covariance = covariance_of_truth(columns, shape, place, prefix);
+  if (with_covariance) find_covariance_of_truth(columns, place, prefix, fields);
   return fields;
 }
 
@@ -500,7 +322,9 @@ Eigen::MatrixXd covariance_in(const CsvRows& rows, const EstimateFields& fields)
   Eigen::MatrixXd P(d, d);
   for (Eigen::Index i = 0; i < d; ++i) {
     for (Eigen::Index j = 0; j < d; ++j) {
-      P(i, j) = rows.number(fields.covariance[static_cast<std::size_t>(i * d + j)], "number");
+      const std::size_t field = fields.covariance[static_cast<std::size_t>(i * d + j)];
+      P(i, j) = field == EstimateFields::kNoField ? 0.0 : rows.number(field, "number");
+      if (fields.are_deviations) P(i, j) *= std::abs(P(i, j));  // a sign that is wrong stays
     }
   }
   return P;

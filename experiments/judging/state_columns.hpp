@@ -44,8 +44,13 @@ struct StateShape {
 struct EstimateFields {
   StateShape shape;
   std::vector<std::size_t> state;  ///< {width} fields of the state
-  /// {d, d} fields; if the file has only a triangle, most occur twice.
+  /// {d, d} fields; if the file has only a triangle, most occur twice. kNoField where the file has
+  /// no covariance between two blocks, which counts as 0.
   std::vector<std::size_t> covariance;
+  static constexpr std::size_t kNoField = static_cast<std::size_t>(-1);
+  bool are_deviations = false;  ///< whether the diagonal has standard deviations
+  /// Which covariances the file does not have, in words; empty if it has all.
+  std::string uncorrelated = {};
   std::optional<std::size_t> nis, nis_dof;  ///< both are present or neither
   std::optional<std::size_t> sensor = {};   ///< of a row of innovations: the name of its sensor
 };
@@ -54,7 +59,8 @@ struct EstimateFields {
 inline const std::string kTimeColumn = "time_s";
 
 /// Parses the header of estimates: `time_s`, the state, then `cov_A_B`, where A and B are names of
-/// components or indices from 0, for the whole covariance or one triangle, and optionally `nis` and
+/// components or indices from 0, for the whole covariance, one triangle of it, or blocks between
+/// which there is none, or `sigma_A`, the standard deviations alone; and optionally `nis` and
 /// `nis_dof`. Columns of a truth are ignored. Errors have the components of what they are errors
 /// of. Throws StudyError that begins with `place`.
 EstimateFields estimate_fields(const std::vector<std::string>& header, const std::string& place);

@@ -27,6 +27,7 @@ struct StateRows {
   std::string first_unwrapped = {};              ///< file and line of the first of them
   std::vector<std::size_t> line = {};            ///< {row} line in the file
   std::uint64_t left_out = 0;                    ///< number of rows not kept because of EqualTimes
+  std::string uncorrelated = {};  ///< covariances that the file does not have; empty: it has all
 };
 
 }  // namespace montecarta::experiments

@@ -29,6 +29,27 @@ Eigen::VectorXd between(const StateShape& shape, const Eigen::VectorXd& a, const
   return state;
 }
 
+/// What estimates are compared with, in words.
+std::string name_of_other(bool is_pair) { return is_pair ? "second estimate" : "truth"; }
+
+/// File and line of a row, the line if it is known.
+std::string place_of_row(const std::filesystem::path& path, const StateRows& rows,
+                         std::size_t row) {
+  if (row >= rows.line.size()) return path.string();
+  return formatted("{}:{}", path, rows.line[row]);
+}
+
+/// What to do about an estimate without a truth at its time.
+std::string remedy_of_time(bool is_inside, bool is_pair) {
+  const std::string others =
+      is_pair ? "both estimators the same times" : "truths at the times of the estimates";
+  const std::string outside =
+      is_pair ? "what only one estimator has" : "estimates outside of the truth";
+  return (is_inside ? formatted("give {}, or use --interpolate, ", others)
+                    : formatted("leave out {}, which --interpolate does, ", outside)) +
+         "or use a larger --tolerance if times have few digits";
+}
+
 /// [s] Times that differ by less are the same, whatever the tolerance is.
 constexpr double kSameTime = 1e-6;
 /// Gaps of the truth that are this many times as long as usual are no path.
@@ -62,12 +83,10 @@ std::size_t TruthPath::row_near(double time, const std::string& estimate) const 
   const double mismatch = std::abs(rows_.time[row] - time);
   if (mismatch <= match_.tolerance) return row;
   const bool is_inside = rows_.time.front() < time && time < rows_.time.back();
-  throw StudyError("{} has no truth in {} (the nearest is {} s away, --tolerance is {} s): {}",
-                   estimate, path_, to_text(mismatch), to_text(match_.tolerance),
-                   is_inside ? "give truths at the times of the estimates, or use --interpolate, "
-                               "or a larger --tolerance if times have few digits"
-                             : "leave out estimates outside of the truth, which --interpolate "
-                               "does, or use a larger --tolerance if times have few digits");
+  throw StudyError(
+      "{} has no {} in {} (the nearest is that of {} s, {} s away, --tolerance is {} s): {}",
+      estimate, name_of_other(match_.is_pair), path_, to_text(rows_.time[row]), to_text(mismatch),
+      to_text(match_.tolerance), remedy_of_time(is_inside, match_.is_pair));
 }
 
 /// The truth between the two rows around `time`; nullopt, counted in `use`, if there are none or
@@ -104,8 +123,10 @@ std::vector<std::optional<TrueState>> TruthPath::at(const StateRows& estimates,
                                                     TruthUse& use) const {
   std::vector<std::optional<TrueState>> found;
   std::optional<std::size_t> used;
-  for (const double time : estimates.time) {
-    const std::string estimate = formatted("{}: time {} s", path, to_text(time));
+  for (std::size_t k = 0; k < estimates.time.size(); ++k) {
+    const double time = estimates.time[k];
+    const std::string estimate =
+        formatted("{}: time {} s", place_of_row(path, estimates, k), to_text(time));
     if (match_.interpolate) {
       found.push_back(interpolated(time, estimate, use));
       continue;
@@ -113,9 +134,10 @@ std::vector<std::optional<TrueState>> TruthPath::at(const StateRows& estimates,
     const std::size_t row = row_near(time, estimate);
     if (used == row) {
       throw StudyError(
-          "{} and the time before have the same row of the truth ({}, {} s): use --interpolate, or "
-          "a smaller --tolerance",
-          estimate, path_, to_text(rows_.time[row]));
+          "{} and the time before have the same row of the {} ({}, {} s): use --interpolate, or a "
+          "smaller --tolerance",
+          estimate, name_of_other(match_.is_pair), place_of_row(path_, rows_, row),
+          to_text(rows_.time[row]));
     }
     used = row;
     const double mismatch = std::abs(rows_.time[row] - time);
@@ -128,42 +150,43 @@ std::vector<std::optional<TrueState>> TruthPath::at(const StateRows& estimates,
   const bool has_any = std::ranges::any_of(found, [](const auto& one) { return one.has_value(); });
   if (has_any || found.empty()) return found;
   throw StudyError(
-      "{}: no estimate has a truth in {} ({} to {} s here, {} to {} s there): give both the same "
+      "{}: no estimate has a {} in {} ({} to {} s here, {} to {} s there): give both the same "
       "clock",
-      path, path_, to_text(estimates.time.front()), to_text(estimates.time.back()),
-      to_text(rows_.time.front()), to_text(rows_.time.back()));
+      path, name_of_other(match_.is_pair), path_, to_text(estimates.time.front()),
+      to_text(estimates.time.back()), to_text(rows_.time.front()), to_text(rows_.time.back()));
 }
 
-std::vector<std::string> TruthUse::notes() const {
+std::vector<std::string> TruthUse::notes(bool is_pair) const {
+  const std::string other = name_of_other(is_pair);
   std::vector<std::string> all;
   if (largest_mismatch > kSameTime) {
     all.push_back(
-        formatted("truths were taken up to {} s beside their estimates ({}): --interpolate takes "
-                  "them at their times",
-                  to_text(largest_mismatch), of_mismatch));
+        formatted("{}s were taken up to {} s beside their estimates ({}): --interpolate takes them "
+                  "at their times",
+                  other, to_text(largest_mismatch), of_mismatch));
   }
   if (in_gaps > 0) {
     all.push_back(
-        formatted("{} estimates lie in gaps of the truth and are missing ({}): --longest-gap "
-                  "SECONDS sets what is interpolated",
-                  in_gaps, first_gap));
+        formatted("{} estimates lie in gaps of the {} and are missing ({}): --longest-gap SECONDS "
+                  "sets what is interpolated",
+                  in_gaps, other, first_gap));
   }
   if (longest_crossed > 0.0) {
     all.push_back(
-        formatted("the truth was interpolated across a gap of {} s, far longer than usual: its own "
+        formatted("the {} was interpolated across a gap of {} s, far longer than usual: its own "
                   "error there counts as the estimate's",
-                  to_text(longest_crossed)));
+                  other, to_text(longest_crossed)));
   }
   if (interpolates_covariance) {
-    all.push_back(
-        "between its rows the truth's errors were taken as those of its neighbours (they " +
-        std::string("change little from row to row): if they are independent, give truths "
-                    "at the times of the estimates"));
+    all.push_back(formatted(
+        "between its rows the errors of the {} were taken as those of its neighbours (they change "
+        "little from row to row): if they are independent, give it at the times of the estimates",
+        other));
   }
   if (outside > 0) {
     all.push_back(
-        formatted("{} estimates lie before or after the truth and are missing, the first in {}",
-                  outside, first_outside));
+        formatted("{} estimates lie before or after the {} and are missing, the first in {}",
+                  outside, other, first_outside));
   }
   return all;
 }

@@ -21,6 +21,7 @@ struct TimeMatch {
   /// [s] Longest gap between two rows of the truth that is interpolated; nullopt: ten times the
   /// usual spacing of the truth.
   std::optional<double> longest_gap = {};
+  bool is_pair = false;  ///< whether the truth is that of a second estimator (judge --pair)
 };
 
 /// What was used of the truths, and what was left out.
@@ -34,8 +35,8 @@ struct TruthUse {
   std::uint64_t outside = 0;             ///< number of estimates left out before or after a truth
   std::string first_outside = {};        ///< the first such estimate: file and time
 
-  /// Sentences on what is not as usual.
-  std::vector<std::string> notes() const;
+  /// Sentences on what is not as usual. `is_pair` is that of TimeMatch.
+  std::vector<std::string> notes(bool is_pair) const;
 };
 
 /// The truth at the time of an estimate.
@@ -52,8 +53,8 @@ class TruthPath {
 
   /// {row} The truth at the times of the estimates in the file `path`. With `interpolate`, a row in
   /// a gap of the truth, or before or after it, has none and is counted in `use`; without it, that
-  /// is an error. Throws StudyError that names both files, also if two estimates have the same
-  /// row of the truth, or if no estimate has a truth.
+  /// is an error. Throws StudyError that names both files and the line, also if two estimates have
+  /// the same row of the truth, or if no estimate has a truth.
   std::vector<std::optional<TrueState>> at(const StateRows& estimates,
                                            const std::filesystem::path& path, TruthUse& use) const;
   /// [s] Time until which there is a truth, within the tolerance.

@@ -4,9 +4,11 @@ It needs CMake, Ninja, a compiler and the libraries of .ci/packages.txt, and dow
 
     pip install .                               # builds the program in build-wheel/
     pip install . --config-settings=build=build # takes the program of that folder
+    pip wheel . --config-settings=libraries=bundled  # for machines without these libraries
 
-The program is built for every x86-64-v3 processor, or on ARM for armv8-a. The libraries that it
-links are not in the wheel.
+The program is built for every x86-64-v3 processor, or on ARM for armv8-a. A wheel with bundled
+libraries has all that the program links but the C library, with their licences; it is made on
+Debian, by patchelf. Without that setting the libraries are not in the wheel.
 """
 import base64
 import hashlib
@@ -21,17 +23,28 @@ import tempfile
 import tomllib
 import zipfile
 
+# The C library, which belongs to the system.
+GLIBC = re.compile(r"(lib(c|m|dl|rt|pthread|resolv|util|mvec)|ld-linux.*)\.so\.\d+")
+LIBRARIES = "lib/montecarta"  # where bundled libraries are, beside the folder bin
+
 SOURCE = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
 
 
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     """Writes the wheel, and returns its name."""
-    stem, tag = _stem(), f"py3-none-{re.sub('[-.]', '_', sysconfig.get_platform())}"
+    settings = config_settings or {}
+    is_bundled = _is_bundled(settings)
+    system = sysconfig.get_platform()
+    if is_bundled:
+        glibc = os.confstr("CS_GNU_LIBC_VERSION").split()[1]
+        system = system.replace("linux", f"manylinux_{glibc}")
+    stem, tag = _stem(), f"py3-none-{re.sub('[-.]', '_', system)}"
     name = f"{stem}-{tag}.whl"
     with tempfile.TemporaryDirectory() as prefix:
-        build = (config_settings or {}).get("build") or _built()
+        build = settings.get("build") or _built()
         subprocess.run(["cmake", "--install", os.path.join(SOURCE, build), "--component", "program",
                         "--strip", "--prefix", prefix], check=True)
+        licences = _bundle(prefix) if is_bundled else {}
         files = {f"{stem}.data/data/{path}": os.path.join(prefix, path) for path in _below(prefix)}
         files[f"{stem}.data/scripts/montecarta"] = files.pop(f"{stem}.data/data/bin/montecarta")
         readers = os.path.join(SOURCE, "analysis/readers")
@@ -39,6 +52,8 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
                   if re.fullmatch(r"montecarta/(\w+\.py|py\.typed)", path)}
         external = os.path.join(SOURCE, "experiments/external/python/montecarta_filter.py")
         files["montecarta_filter.py"] = external
+        files |= {f"{stem}.dist-info/licenses/{package}.txt": path
+                  for package, path in licences.items()}
         files[f"{stem}.dist-info/LICENSE"] = os.path.join(SOURCE, "LICENSE")
         texts = {f"{stem}.dist-info/METADATA": _metadata(),
                  f"{stem}.dist-info/WHEEL": "Wheel-Version: 1.0\nGenerator: montecarta\n"
@@ -82,6 +97,46 @@ def _built():
                       ["--build", "build-wheel", "--target", "montecarta"]]:
         subprocess.run(["cmake", *arguments], cwd=SOURCE, check=True)
     return "build-wheel"
+
+
+def _is_bundled(settings):
+    said = settings.get("libraries", "linked")
+    if said not in ("linked", "bundled"):
+        raise RuntimeError(f"libraries={said}: say linked (the default) or bundled")
+    missing = [name for name in ("patchelf", "dpkg-query") if shutil.which(name) is None]
+    if said == "bundled" and missing:
+        raise RuntimeError(f"{' and '.join(missing)} not installed (libraries=bundled needs "
+                           "Debian's): bash .ci/install-packages test")
+    return said == "bundled"
+
+
+def _bundle(prefix):
+    """Copies the libraries that the program links, and lets it find them where it is installed.
+    Returns {package: file} of their licences."""
+    program, folder = os.path.join(prefix, "bin/montecarta"), os.path.join(prefix, LIBRARIES)
+    os.makedirs(folder)
+    licences = {}
+    linked = subprocess.run(["ldd", program], check=True, capture_output=True, text=True).stdout
+    for name, path in re.findall(r"^\s*(\S+) => (.+?)(?: \(0x\w+\))?$", linked, re.MULTILINE):
+        if GLIBC.fullmatch(name):
+            continue
+        if not os.path.exists(path):
+            raise RuntimeError(f"{name}, which the program links, is {path}: install it")
+        copy = os.path.join(folder, name)
+        shutil.copyfile(path, copy)
+        subprocess.run(["patchelf", "--set-rpath", "$ORIGIN", copy], check=True)
+        package = _package_of(os.path.realpath(path))
+        licences[package] = f"/usr/share/doc/{package}/copyright"
+    subprocess.run(["patchelf", "--force-rpath", "--set-rpath", f"$ORIGIN/../{LIBRARIES}", program],
+                   check=True)
+    return licences
+
+
+def _package_of(path):
+    """The Debian package that has a library."""
+    found = subprocess.run(["dpkg-query", "-S", f"*/{os.path.basename(path)}"], check=True,
+                           capture_output=True, text=True).stdout
+    return re.split("[:,]", found, maxsplit=1)[0]
 
 
 def _below(folder):

@@ -110,6 +110,18 @@ class JudgeFromPython(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "^error is missing"):
             montecarta.judge_estimates(estimates, truths, P)
 
+    def test_judges_position_and_rotation_by_themselves(self):
+        draw = np.random.default_rng(6)
+        errors = 0.1 * draw.standard_normal((40, 25, 6)) * [1, 1, 1, 3, 3, 3]
+        P = np.broadcast_to(0.01 * np.eye(6), (25, 6, 6))
+        found = montecarta.judge(errors, P, names="x_m,y_m,z_m,rx_rad,ry_rad,rz_rad")
+        self.assertEqual(list(found.blocks), ["position", "rotation"])
+        self.assertNotEqual(found.blocks["position"].answer, "optimistic")
+        self.assertEqual(found.blocks["rotation"].answer, "optimistic")
+        self.assertAlmostEqual(found.blocks["rotation"].ratio.estimate, 9, delta=1)
+        self.assertRegex(str(found), r"\n  rotation: optimistic, NEES ratio [89]")
+        self.assertIn("rotation: optimistic", found._repr_html_())
+
     def test_takes_any_array_of_the_same_numbers_alike(self):
         errors, _ = kalman_filter(10, 12, 1.0)
         errors = np.round(errors * 64)  # which every type has
@@ -149,14 +161,16 @@ class JudgeFromPython(unittest.TestCase):
             self.assertEqual(montecarta.judge(given, P).missing, 1)
         P[2, 5] = np.nan
         self.assertEqual(montecarta.judge(lacking, P).unusable, 0)
-        for fault, what in [(np.nan, "finite"), (np.inf, "finite"), (7.0, "symmetric"),
-                            (None, "positive semidefinite")]:
+        for fault, what in [((0, 1, np.nan), "is not finite"), ((0, 1, np.inf), "is not finite"),
+                            ((0, 1, 7.0), "is not symmetric"),
+                            ((1, 1, -1.0), "has a negative variance"),
+                            (([0, 1], [1, 0], 7.0), "is not positive semidefinite")]:
             wrong = np.array(P)
-            wrong[3, 4, 0, 1] = wrong[3, 4, 0, 1] if fault is None else fault
-            wrong[3, 4] *= -1 if fault is None else 1
+            wrong[3, 4][fault[:2]] = fault[2]
             found = montecarta.judge(lacking, wrong.astype(np.float32))
             self.assertEqual((found.unusable, found.missing), (1, 1), what)
-            self.assertIn(f"run 3, scan 4 is not {what}", repr(found))
+            self.assertIn(f"the covariance {what} in 1 row, the first in run 3, scan 4",
+                          repr(found))
             with self.assertRaises(montecarta.Inconsistent):
                 found.raise_if_inconsistent()
 

@@ -45,6 +45,28 @@ PYTHONPATH=$folder/target /usr/bin/python3 -B judge.py "$folder/target/bin/monte
 pip uninstall -y montecarta
 [ ! -e "$folder/env/bin/montecarta" ] || fail "pip uninstall leaves the program"
 
+# A wheel with its libraries needs none of the machine but the C library.
+if command -v patchelf >/dev/null; then
+  pip wheel --no-index --no-deps --config-settings="build=$build" \
+    --config-settings=libraries=bundled -w "$folder" "$source" || fail "pip wheel, bundled"
+  bundled=$(ls "$folder"/montecarta-*-py3-none-manylinux_*.whl)
+  pip install --no-index "$bundled" || fail "pip install, bundled"
+  foreign=$(ldd "$folder/env/bin/montecarta" | grep '=>' | grep -v "=> $folder/env/" |
+    grep -vE '^\s*lib(c|m|resolv|dl|rt|pthread)\.so' || true)
+  [ -z "$foreign" ] || fail "libraries that are not in the wheel: $foreign"
+  grep -q HDF5 "$folder"/env/lib/python3*/site-packages/montecarta-*.dist-info/licenses/libhdf5* ||
+    fail "no licences"
+  rm -f first.h5
+  "$folder/env/bin/python" judge.py "$folder/env/bin/montecarta" || fail "bundled"
+  if "$folder/env/bin/python" -m pip wheel --no-index --no-deps -q -w "$folder" "$source" \
+    --config-settings="build=$build" --config-settings=libraries=some 2>refused; then
+    fail "a setting that is none"
+  fi
+  grep -q 'say linked' refused || fail "$(cat refused)"
+else
+  echo "not tried: a wheel with its libraries, since patchelf is not installed"
+fi
+
 # The source archive has what git knows.
 if git -C "$source" rev-parse 2>/dev/null; then
   PYTHONPATH=$source/experiments/package /usr/bin/python3 -B -c \

@@ -18,9 +18,9 @@
 `open` and `arrays` read files alone; everything else needs the program (see `program`), NumPy and
 h5py. Tables need pandas, and cells of results xarray and netCDF4.
 """
-from ._judging import Inconsistent, Judgement, Ratio, judge, judge_estimates
+from ._judging import Block, Inconsistent, Judgement, Ratio, judge, judge_estimates
 from ._program import program
 from ._results import Results, arrays, at_scans, open, pose_error, run
 
-__all__ = ["Inconsistent", "Judgement", "Ratio", "Results", "arrays", "at_scans", "judge",
+__all__ = ["Block", "Inconsistent", "Judgement", "Ratio", "Results", "arrays", "at_scans", "judge",
            "judge_estimates", "open", "pose_error", "program", "run"]

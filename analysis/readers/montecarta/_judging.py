@@ -37,6 +37,16 @@ class Ratio(NamedTuple):
         return f"{self.estimate:.3g} [{self.lower:.3g}, {self.upper:.3g}]"
 
 
+class Block(NamedTuple):
+    """The verdict on some components of a state by themselves."""
+
+    answer: str   # as that of a Judgement
+    ratio: Ratio
+
+    def __str__(self) -> str:
+        return f"{self.answer}, NEES ratio {self.ratio}"
+
+
 class Inconsistent(AssertionError):
     """An estimator is shown not to be consistent."""
 
@@ -63,6 +73,9 @@ class Judgement:
     ratio : Ratio
         Mean of the squared errors in units of their covariance [1], with its interval; NaN if
         nothing could be tested.
+    blocks : dict of str to Block
+        The same of position, rotation or heading, and velocity by themselves, where the names of
+        the components tell which is which.
     runs, missing, unusable : int
         Numbers of runs, of samples without an estimate, and of samples whose covariance is none.
     notes : list of str
@@ -84,6 +97,8 @@ class Judgement:
         self.sentence: str = self._json["reason"]
         self.ratio = next((_ratio_of(test["members"][0]) for test in self._json["families"]
                            if test["family"] == "size"), Ratio(np.nan, np.nan, np.nan))
+        self.blocks = {block["name"]: Block(block["verdict"], _ratio_of(block))
+                       for block in self._json["blocks"]}
 
     @property
     def families(self) -> pandas.DataFrame:
@@ -170,7 +185,8 @@ class Judgement:
             raise Inconsistent(repr(self))
 
     def __repr__(self) -> str:
-        return "\n".join([self.sentence, *("note: " + note for note in self.notes)])
+        blocks = (f"  {name}: {block}" for name, block in self.blocks.items())
+        return "\n".join([self.sentence, *blocks, *("note: " + note for note in self.notes)])
 
     def _repr_html_(self) -> str:
         colour = {"consistent": "#2a7d3f", "undecided": "#777", "untested": "#777"}
@@ -178,6 +194,8 @@ class Judgement:
                    if test["family"] in ("size", "component") for member in test["members"]]
         rows = "".join(f"<tr><td>{html.escape(name)}</td><td>{ratio}</td></tr>"
                        for name, ratio in members)
+        rows += "".join(f"<tr><td>{html.escape(name)}: {block.answer}</td><td>{block.ratio}</td>"
+                        "</tr>" for name, block in self.blocks.items())
         notes = "".join(f"<li>{html.escape(note)}</li>" for note in self.notes)
         return (f"<p><b style='color:{colour.get(self.answer, '#b3261e')}'>{self.answer}</b><br>"
                 f"{html.escape(self.sentence)}</p>"
@@ -211,7 +229,9 @@ def judge(errors: ArrayLike, covariances: ArrayLike, times: ArrayLike | None = N
         Normalised innovations squared [1], and their numbers of components (an array or one
         number), whose ratio is `Judgement.nis`. NaN where nothing was observed.
     names : sequence of str, {d}, or a str with commas, optional
-        Names of the components, with a unit, e.g. ["x_m", "heading_rad"].
+        Names of the components, with a unit, e.g. ["x_m", "heading_rad"]. Those of a pose in space
+        are x_m, y_m, z_m, rx_rad, ry_rad, rz_rad; then `Judgement.blocks` has position and
+        rotation.
     within : float, optional
         Margin [1]: ratios of squared errors from 1 / within to within are consistent.
     components : sequence of str, optional
@@ -424,8 +444,6 @@ def _judge(arrays: dict[str, NDArray[Any]], names: str | Sequence[str] | None,
         shutil.rmtree(folder, ignore_errors=True)
         raise
     weakref.finalize(judgement, shutil.rmtree, folder, True)
-    if judgement.unusable > 0:
-        judgement.notes += _unusable_note(next(iter(arrays.values())), arrays["covariance"])
     return judgement
 
 
@@ -447,24 +465,3 @@ def _of_arrays(text: str, folder: str) -> str:
     text = re.sub(of_run, r"\1", text)
     text = re.sub(f"^montecarta: note: |^judge: |{given}: |{result}: |cell estimator: ", "", text)
     return re.sub(r"--(error|within|components)\b", r"\1", text)
-
-
-def _unusable_note(states: NDArray[Any], covariances: NDArray[Any]) -> list[str]:
-    """What is wrong with the first covariance that is none."""
-    for run, (of_states, of_run) in enumerate(zip(states, covariances)):
-        missing = np.isnan(of_states).all(-1)
-        finite = np.isfinite(of_run).all((-2, -1))
-        P = np.where(finite[:, None, None], of_run, 0.0).astype(float)
-        sigma = np.sqrt(np.abs(np.diagonal(P, axis1=-2, axis2=-1)))
-        scale = sigma[:, :, None] * sigma[:, None, :]
-        correlation = P / np.where(scale > 0, scale, 1.0)
-        turned = np.swapaxes(correlation, -2, -1)
-        symmetric = (np.abs(correlation - turned) <= 1e-6).all((-2, -1))
-        definite = np.linalg.eigvalsh(correlation)[:, 0] > -1e-6
-        for fine, what in [(finite, "finite"), (symmetric, "symmetric"),
-                           (definite, "positive semidefinite")]:
-            wrong = np.flatnonzero(~fine & ~missing)
-            if wrong.size > 0:
-                return [f"the covariance of run {run}, scan {wrong[0]} is not {what}: give one "
-                        "that is, or NaN errors if there is no estimate"]
-    return []

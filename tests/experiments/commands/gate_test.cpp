@@ -52,8 +52,8 @@ TEST_F(GateOfAFile, TellsByItsExitCode) {
                     "are [3-5]"));
   const Called open = gate("right", {"--within", "1.01"});
   EXPECT_EQ(open.code, 5);
-  EXPECT_THAT(open.out,
-              ContainsRegex("undecided: 100 runs do not show .* about [0-9]+ more runs decide"));
+  EXPECT_THAT(open.out, ContainsRegex("undecided: no fault is shown, and 100 runs are too few .* "
+                                      "about [0-9]+ more runs decide"));
   for (const char* code : {"0 shown", "4 not", "5 too few"}) {
     EXPECT_THAT(call({"gate", "--help"}).out, HasSubstr(code));
   }

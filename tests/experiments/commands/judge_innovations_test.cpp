@@ -181,5 +181,44 @@ TEST_F(JudgeInnovations, OrTheDifferenceOfTwoEstimatorsNeedNoTruth) {
               HasSubstr("--pair: needs two estimators (1 was found)"));
 }
 
+// Two files are two estimators, and nothing is called a truth.
+TEST_F(JudgeInnovations, OfAPairMayBeTwoFilesWithoutNumbers) {
+  const std::string header = "time_s,a,cov_a_a\n";
+  write("ekf.csv", header + "1,0,1\n2,0,1\n3,0,1\n");
+  write("ukf.csv", header + "1,1,1\n2,2,1\n3,0,1\n");
+  const Called called = judged({"ekf.csv", "ukf.csv"}, {"--pair"});
+  EXPECT_EQ(called.code, 0) << called.err;
+  EXPECT_THAT(called.out, HasSubstr("the differences of ekf and ukf, without a truth"));
+  write("ukf.csv", header + "1.5,1,1\n2.5,2,1\n");
+  EXPECT_THAT(judged({"ekf.csv", "ukf.csv"}, {"--pair"}).err,
+              AllOf(HasSubstr("ekf.csv:2: time 1 s has no second estimate in ukf.csv"),
+                    Not(HasSubstr("truth"))));
+  write("ukf.csv", "time_s,b,cov_b_b\n1,1,1\n");
+  EXPECT_THAT(judged({"ekf.csv", "ukf.csv"}, {"--pair"}).err,
+              AllOf(HasSubstr("ukf.csv: another state"), Not(HasSubstr("truth"))));
+}
+
+TEST_F(JudgeInnovations, OfSensorsThatAreNotAlikeHaveARemedy) {
+  write("i_0.csv", "time_s,Sensor,nis,nis_dof\n1,gps,2,2\n");
+  EXPECT_THAT(judged({"i_0.csv"}, {"--innovations"}).err, HasSubstr("rename it to sensor"));
+  write("i_0.csv", "time_s,gate,nis,nis_dof\n1,9,2,2\n");
+  EXPECT_THAT(judged({"i_0.csv"}, {"--innovations"}).err, HasSubstr("beside gate"));
+  write("i_0.csv", "time_s,sensor,range_m,speed_mps,cov_0_0,cov_1_1\n1,gps,2,,1,\n");
+  EXPECT_THAT(judged({"i_0.csv"}, {"--innovations"}).err,
+              AllOf(HasSubstr("i_0.csv:2: sensor gps has no speed_mps"),
+                    HasSubstr("time_s,sensor,nis,nis_dof")));
+}
+
+// One run shows the bias of white innovations, which is said once.
+TEST_F(JudgeInnovations, OfOneRunHaveABias) {
+  std::string text = "time_s,gap_m,cov_0_0\n";
+  RngStream draw({17, 0, 0, 0, Draw::test});
+  for (int k = 0; k < 200; ++k)
+    text += std::to_string(k) + "," + to_text(draw.normal() + 0.5) + ",1\n";
+  write("i_0.csv", text);
+  const Called called = judged({"i_0.csv"}, {"--innovations"});
+  EXPECT_THAT(called.out, AllOf(HasSubstr("gap has a bias"), Not(HasSubstr("runs bias"))));
+}
+
 }  // namespace
 }  // namespace montecarta::experiments

@@ -127,11 +127,15 @@ TEST_F(Judge, RunsThatEndEarlyHaveFailed) {
 
 TEST_F(Judge, CovariancesThatAreNoneAreCountedAndLeftOut) {
   const std::string good = "1,1,0,0,1,0,0,0,1,0,0,0,1\n";
-  for (const std::string bad : {"2,1,0,0,-1,0,0,0,1,0,0,0,1\n", "2,1,0,0,1,2,0,2,1,0,0,0,1\n",
-                                "2,1,0,0,1,0.5,0,0,1,0,0,0,1\n"}) {
+  for (const auto& [bad, reason] :
+       {std::pair("2,1,0,0,-1,0,0,0,1,0,0,0,1\n", "has a negative variance"),
+        std::pair("2,1,0,0,1,2,0,2,1,0,0,0,1\n", "is not positive semidefinite"),
+        std::pair("2,1,0,0,1,0.5,0,0,1,0,0,0,1\n", "is not symmetric")}) {
     const Called called = judged(kHeader + good + bad);
     ASSERT_EQ(called.code, 0) << called.err;
     EXPECT_THAT(called.out, HasSubstr("1 of 4 samples (25.0 %)")) << bad;
+    EXPECT_THAT(called.err, HasSubstr(std::string("e: the covariance ") + reason +
+                                      " in 1 row, the first in e_0.csv:3"));
     const analysis::CellAnalysis cell = analyzed("mine.h5").cells[0];
     EXPECT_EQ(cell.nees[0].series.unusable, 1U);
     EXPECT_NEAR(cell.nees[0].series.average[0], (1.0 + 0.01) / 2.0, 1e-12);
@@ -196,7 +200,7 @@ TEST_F(Judge, PosesInSpaceAreJudgedAndCompared) {
 
 TEST_F(Judge, WrongInputIsNamed) {
   EXPECT_THAT(judged(kHeader + "1,0,0,0,1,0,0,0,1,0,0,0,1\n3,0,0,0,1,0,0,0,1,0,0,0,1\n").err,
-              HasSubstr("e_0.csv: time 3 s has no truth in truth.csv"));
+              HasSubstr("e_0.csv:3: time 3 s has no truth in truth.csv"));
   EXPECT_FALSE(exists("mine.h5") || exists("mine.h5.part"));
   EXPECT_THAT(judged("").err, HasSubstr("e_0.csv: empty"));
   EXPECT_THAT(

@@ -99,6 +99,33 @@ TEST_F(JudgeWindows, HaveTheCovarianceThatWasAdded) {
   }
 }
 
+// A filter with a map has the same covariance all the time, and none of its increments.
+TEST_F(JudgeWindows, HaveABoundWhereEstimatesAreCorrected) {
+  const auto write_filter = [&](double error) {
+    std::string text =
+        "time_s,x_m,y_m,heading_rad,cov_0_0,cov_0_1,cov_0_2,cov_1_1,cov_1_2,cov_2_2\n";
+    std::string truths = "time_s,x_m,y_m,heading_rad\n";
+    for (int k = 0; k < 60; ++k) {
+      text += std::to_string(k) + "," + to_text(k + (k % 2 == 0 ? error : -error)) +
+              ",0,0,1,0,0,1,0,1\n";
+      truths += std::to_string(k) + "," + std::to_string(k) + ",0,0\n";
+    }
+    write("odometry.csv", text);
+    write("truth.csv", truths);
+    const Called called = judged({"--error", "world", "--windows", "1"});
+    EXPECT_EQ(called.code, 0) << called.err;
+    EXPECT_THAT(called.out, HasSubstr("judged by a bound that their errors cannot exceed"));
+    EXPECT_THAT(called.out, Not(HasSubstr("unusable")));
+    std::vector<double> P(9 * 59);
+    const ResultFile file(folder_ / "mine.h5");
+    file.read(file.cells()[0], "error_covariance", 0, std::span(P));
+    EXPECT_GE(P[0], 4.0 - 1e-9) << "errors of both ends that go against each other";
+    return called.out;
+  };
+  EXPECT_THAT(write_filter(0.0), HasSubstr("odometry.1s is undecided"));
+  EXPECT_THAT(write_filter(9.0), HasSubstr("odometry.1s is optimistic"));
+}
+
 TEST_F(JudgeWindows, AreOfPosesAndIncrease) {
   write_odometry("body");
   EXPECT_THAT(judged({"--windows", "1,5"}).err, HasSubstr("--error is missing"));

@@ -73,6 +73,15 @@ TEST_F(EstimateArraysTest, HaveErrorsOfWhichNaNIsMissing) {
   EXPECT_FALSE(arrays.has_common_truths());
 }
 
+// Octave writes no attributes.
+TEST_F(EstimateArraysTest, MayBeNamedByTheCaller) {
+  Arrays(path_).with("error", {1, 1, 2}, {1, 2}).with("covariance", {1, 1, 2, 2}, {1, 0, 0, 1});
+  const EstimateArrays arrays(path_, "ekf", "x_m,rz_rad");
+  EXPECT_EQ(arrays.estimates(0, 0).shape.components, (std::vector<std::string>{"x", "rz"}));
+  EXPECT_THAT(complaint_of([&] { EstimateArrays(path_, "ekf", "x_m"); }),
+              HasSubstr("has 1 columns"));
+}
+
 TEST_F(EstimateArraysTest, MayBeSavedByOctaveWhoseVectorsHaveTwoAxes) {
   Arrays(path_)
       .with_group("error", {2, 3, 1}, {1, 2, 3, 4, 5, 6})

@@ -39,7 +39,7 @@ Eigen::VectorXd planar(double unknown) {
 std::string notes_on(const StateRows& rows,
                      const StateRows& truth = rows_with(Eigen::VectorXd::Zero(6), 1.0)) {
   const std::vector<std::string> cells = {"ekf"};
-  LikelyMistakes mistakes(cells, ErrorConvention::world, true);
+  LikelyMistakes mistakes(cells, ErrorConvention::world, true, false);
   mistakes.add_truth(truth, "truth.csv");
   mistakes.add(0, rows, "ekf/run_0.csv", truth);
   return joined(mistakes.notes(), "\n");

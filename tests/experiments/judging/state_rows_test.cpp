@@ -91,6 +91,34 @@ TEST_F(StateFiles, AreRefusedWithFileLineAndRemedy) {
   EXPECT_THAT(complaint("time_s,cov_x_x\n"), HasSubstr("no state"));
 }
 
+TEST_F(StateFiles, NameTheElementThatIsMissingAsTheFileNamesElements) {
+  EXPECT_THAT(complaint("time_s,a,b,cov_0_0,cov_0_1\n"), HasSubstr("no cov_1_1"));
+  EXPECT_THAT(complaint("time_s,a,b,cov_a_a,cov_a_b\n"), HasSubstr("no cov_b_b"));
+  EXPECT_THAT(complaint("time_s,a,b,cov_0_0,cov_0_1,cov_11\n"),
+              AllOf(HasSubstr("'cov_11' is no element"), HasSubstr("is called cov_1_1")));
+  EXPECT_THAT(complaint("time_s,a,b,c,cov_0_0,cov_0_1,cov_1_1,cov_1_2,cov_2_2\n"),
+              HasSubstr("no cov_0_2"))
+      << "a triangle with a hole";
+}
+
+TEST_F(StateFiles, MayHaveBlocksOrDeviationsAlone) {
+  const StateRows whole = read_estimates(written(kPoseHeader + kRow));
+  EXPECT_EQ(whole.uncorrelated, "");
+  const StateRows blocks = read_estimates(
+      written("time_s,a,b,c,cov_a_a,cov_a_c,cov_b_b,cov_c_c\n1,0,0,0,11,13,22,33\n"));
+  const Eigen::Matrix3d P{{11, 0, 13}, {0, 22, 0}, {13, 0, 33}};
+  EXPECT_EQ(blocks.covariance[0], P);
+  EXPECT_EQ(blocks.uncorrelated, "between a,c and b");
+  const StateRows sigmas = read_estimates(
+      written("time_s,x_m,y_m,yaw_rad,sigma_yaw_rad,sigma_x_m,sigma_y_m\n1,0,0,0,3,1,-2\n"));
+  EXPECT_EQ(sigmas.shape.kind, StateKind::pose);
+  EXPECT_EQ(sigmas.covariance[0].diagonal(), Eigen::Vector3d(1, -4, 9)) << "a mark stays one";
+  EXPECT_EQ(sigmas.uncorrelated, "between x and y and heading");
+  EXPECT_THAT(complaint("time_s,a_m,b_m,sigma_a_m\n"), HasSubstr("no sigma_b"));
+  EXPECT_THAT(complaint("time_s,a_m,sigma_a_rad\n"), HasSubstr("rename it to sigma_a_m"));
+  EXPECT_THAT(complaint("time_s,a_m,sigma_a_m,cov_a_a\n"), HasSubstr("beside columns of a cov"));
+}
+
 // Digits were lost, or there are two estimates of one time.
 TEST_F(StateFiles, WithEqualTimesAreRefusedOrReadByARule) {
   const std::string header = "time_s,x_m,cov_0_0\n";
@@ -180,9 +208,9 @@ TEST_F(StateFiles, HaveTruthsAtTheTimesOfEstimatesOrBetween) {
     return TruthPath(rows, "truth.csv", match).at({.shape = shape, .time = times}, "est.csv", use);
   };
   EXPECT_EQ(at({1.0 + 1e-7}, {})[0]->state, Eigen::Vector2d(-3, 10));
-  EXPECT_THAT(use.notes(), IsEmpty());
+  EXPECT_THAT(use.notes(false), IsEmpty());
   EXPECT_EQ(at({0.1}, {.tolerance = 0.2})[0]->state, Eigen::Vector2d(3, 0));
-  EXPECT_THAT(use.notes(), ElementsAre(HasSubstr("up to 0.1 s beside their estimates (est.csv")));
+  EXPECT_THAT(use.notes(false), ElementsAre(HasSubstr("up to 0.1 s beside their estimates (est.csv")));
   const auto half = at({0.5}, {.interpolate = true})[0].value().state;
   EXPECT_NEAR(std::abs(half(0)), kPi, 1e-12);
   EXPECT_EQ(half(1), 5.0);
@@ -211,7 +239,7 @@ TEST_F(StateFiles, HaveNoTruthInAGapNorOutsideOfIt) {
   };
   TruthUse use, longer;
   EXPECT_THAT(known({.interpolate = true}, use), ElementsAre(1, 1, 0, 0, 1, 0));
-  EXPECT_THAT(use.notes(),
+  EXPECT_THAT(use.notes(false),
               ElementsAre(HasSubstr("2 estimates lie in gaps of the truth and are missing "
                                     "(truth.csv has no row from 3 to 30 s)"),
                           HasSubstr("1 estimates lie before or after the truth")));
