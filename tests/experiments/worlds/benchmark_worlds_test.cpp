@@ -19,21 +19,21 @@ constexpr const char* kFrozenFolder = "studies/benchmark/1";
 /// {name} SHA-256 of the resolved text of each study, which contains its world.
 const std::map<std::string, std::string>& frozen_studies() {
   static const std::map<std::string, std::string> frozen = {
-      {"circle_easy", "4aecd154c5b9245768c5e60d86f8ef571510af1bd25d39e5127b3ff89ad8cd1f"},
-      {"circle_hard", "f8563e03e9d69aaebd97f3beb2cd7248d6e0cfdf99f8902cfcbccc03ec8bb072"},
-      {"corridor_easy", "911b7e448c89279815d99ee3988cbaff4370ed31e970d6a9e17faccb4a20c1b5"},
-      {"corridor_hard", "cdfcaab8e88418dff4052398b96eaf218e8c024d6f8d64dc17ec9d60ce8d6ff4"},
-      {"dense_loop_easy", "d5837c964ef1f13693bc8c46e92561e171d8ab0264e4bb3eb8b1ca8e1bb35c00"},
-      {"dense_loop_hard", "70dc00b1fbc1723b11bd18291ab666f2e2235c906f184ec58444bd67a7aa43fa"},
-      {"field_easy", "bcf03971b13c598029f168c1f8d40f15e500c7b19b90a174032d07ea55759d37"},
-      {"field_hard", "5424c1ad44524733acc4b1ac050b06761a3a837c368da249410e1102925fc6d9"},
-      {"figure_eight_easy", "c33a5dd39115c3516eca46b4c4b41ed55c4fdd31cbca00cca15d8bd747a1b351"},
-      {"figure_eight_hard", "57697b6b7d5b85b1f621498bd5eca4dd53a4ff7ff24463b3915beec13716dbfd"},
-      {"known_map", "5ca2accf3e146d2a5d9495377f395e64d2c71ec971fe730ef11b28048116e946"},
-      {"small_loop_easy", "61772b22c0ecd7990806a55ce00236785bf8f007eaea24394d3d9a3d490c0296"},
-      {"small_loop_hard", "f42c23b283f9b2fd3c682a8f92e4c338feed27b01b3f44e819dfda00d5325b12"},
-      {"sparse_loop_easy", "905f5e5868ef0fbcf4ce318919fce594b3cc1164504f5bcd88324568648132c4"},
-      {"sparse_loop_hard", "1a77b9e7f76aa7cfb4d85cbf1ba7b5fe58fbf82b583849e2f92347d9cc1e00ae"},
+      {"circle_easy", "3085b7fe6c1867ec2c331431e1be61d075e266a48ec7105ce23603731ca7d8ac"},
+      {"circle_hard", "f3a08de39689f04005a89e06f1f685397b8e9a10e6693b4bcc9e9a003eeaabf4"},
+      {"corridor_easy", "e6b51a3fe32b918e0758ce445b169403b0e6ab0857e823f8a890fdcb1f96bf56"},
+      {"corridor_hard", "a588e7cea35694139bb0cf16e44fff1f16b22e2393d3ab2343afef53e7194fa5"},
+      {"dense_loop_easy", "5e190ed24f3ab6dde6ced5fbe779e94c9205239200e634905741ede639929a5d"},
+      {"dense_loop_hard", "ede546e3396ca43f08144df9d7da95f0e35ad5e00dc1f5aa59dbb9ca20b8a336"},
+      {"field_easy", "19c1c017eca68b6e5074c71c6c398c03a7a483d00e1bece533b9f446ed1250ca"},
+      {"field_hard", "68832ad637ee3cbddef23929568c1fe085400c2f2f8d9f973f0f5e338dde3e13"},
+      {"figure_eight_easy", "000ca99f0bdea5ea241f284e0234f3cfed412ac37b82c751e2ca11de7bb8d7bf"},
+      {"figure_eight_hard", "f7e825be7c1188923a38bad47e805906386ec6abe1c7f1c07d4ad68bb3241224"},
+      {"known_map", "99a765ef92ec46c335668d4717a21806e89af499d621d959b45a993d41456b19"},
+      {"small_loop_easy", "8b61e97901921af5b8abbdee57a07ac93d13877b1ffb1cff534f7f41f4175099"},
+      {"small_loop_hard", "fad4513e28ded0ab9d409162c876d6b5e32179529282d2ea6695cee42af6acf4"},
+      {"sparse_loop_easy", "8dfee76e2c1a227f88b2a5cfe9a117c66bd4ec506e1994d4501ae060bdacd2a0"},
+      {"sparse_loop_hard", "eb97e2786d08f67ef6d0237c93f7ddba1035e04783d5400af65ae36e4f4288d7"},
   };
   return frozen;
 }
