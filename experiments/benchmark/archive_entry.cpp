@@ -334,6 +334,18 @@ ArchiveEntry read_entry(const fs::path& path) {
                    entry.label + ".json");
 }
 
+std::vector<ArchiveEntry> read_entries_of_world(const fs::path& folder) {
+  std::vector<fs::path> paths;
+  std::error_code none;
+  for (const auto& file : fs::directory_iterator(folder, none)) {
+    if (file.path().extension() == ".json") paths.push_back(file.path());
+  }
+  std::ranges::sort(paths);
+  std::vector<ArchiveEntry> entries;
+  for (const fs::path& path : paths) entries.push_back(read_entry(path));
+  return entries;
+}
+
 std::vector<ArchiveEntry> read_entries(const fs::path& folder) {
   if (!fs::is_directory(folder)) {
     throw StudyError(folder.string() +
@@ -342,13 +354,8 @@ std::vector<ArchiveEntry> read_entries(const fs::path& folder) {
   }
   std::vector<ArchiveEntry> entries;
   for (const std::string& world : benchmark_worlds()) {
-    std::vector<fs::path> paths;
-    std::error_code none;
-    for (const auto& file : fs::directory_iterator(folder / world, none)) {
-      if (file.path().extension() == ".json") paths.push_back(file.path());
-    }
-    std::ranges::sort(paths);
-    for (const fs::path& path : paths) entries.push_back(read_entry(path));
+    for (ArchiveEntry& entry : read_entries_of_world(folder / world))
+      entries.push_back(std::move(entry));
   }
   return entries;
 }

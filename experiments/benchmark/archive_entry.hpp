@@ -27,7 +27,7 @@ inline constexpr std::uint64_t kRunsOfArchivedBlock = 64;
 inline constexpr std::array kArchivedScores = {"position_rmse", "heading_rmse", "nees"};
 inline constexpr std::size_t kArchivedPositionRmse = 0;
 
-/// {score}{run} Scores, of which kArchivedDigits bits are kept; NaN where a run failed.
+/// {score}{run} Scores as archived() keeps them; NaN where a run failed.
 using ArchivedScores = std::array<std::vector<double>, kArchivedScores.size()>;
 
 /// A score as the archive keeps it: a number of 24 bits, with 15 bits behind the leading one.
@@ -40,23 +40,23 @@ struct ArchivedVerdict {
   double within = 0.0, level = 0.0;
   double ratio = kNaN;  ///< NEES ratio; NaN if it is not tested
   Interval interval = {kNaN, kNaN};
-  analysis::Json families;  ///< {family} name, p-value and strongest member
+  analysis::Json families = {};  ///< {family} name, p-value and strongest member
 };
 
 struct ArchiveEntry {
-  std::string world;
-  std::string label;   ///< label of the cell, and name of the file
-  std::string filter;  ///< name of the filter in study files
-  std::string cell;    ///< value of `cell` in a study file that gives this filter
-  std::string study_sha256;
-  std::string drives_sha256;
+  std::string world = {};
+  std::string label = {};   ///< label of the cell, and name of the file
+  std::string filter = {};  ///< name of the filter in study files
+  std::string cell = {};    ///< value of `cell` in a study file that gives this filter
+  std::string study_sha256 = {};
+  std::string drives_sha256 = {};
   std::uint64_t seed = 0, runs = 0, failed = 0;
-  std::string first_failure;  ///< reason of the first failed run; empty if none failed
-  ArchivedVerdict verdict;
+  std::string first_failure = {};  ///< reason of the first failed run; empty if none failed
+  ArchivedVerdict verdict = {};
   double cpu_seconds = kNaN;  ///< [s] mean processor time of a run, which is no part of the result
-  std::vector<std::pair<std::string, std::string>> made_by;  ///< version, compiler, processor
-  std::vector<std::uint64_t> blocks;                         ///< {block} fingerprint of its runs
-  ArchivedScores scores;
+  std::vector<std::pair<std::string, std::string>> made_by = {};  ///< version, compiler, processor
+  std::vector<std::uint64_t> blocks = {};  ///< {block} fingerprint of its runs
+  ArchivedScores scores = {};
 
   /// Root of the mean of the squared position errors over the complete runs [m].
   double position_rmse() const;
@@ -86,6 +86,9 @@ std::filesystem::path path_of_entry(const std::filesystem::path& folder, const s
 /// Reads an entry. Throws StudyError with file and remedy if the file is no entry, is damaged, has
 /// another name than its cell, or lies in the folder of another world.
 ArchiveEntry read_entry(const std::filesystem::path& path);
+
+/// The entries FOLDER/*.json of one world, in the order of labels.
+std::vector<ArchiveEntry> read_entries_of_world(const std::filesystem::path& folder);
 
 /// All entries in FOLDER/WORLD/*.json of the worlds of the benchmark, in the order of worlds, then
 /// of labels.

@@ -13,7 +13,7 @@ namespace montecarta::experiments {
 namespace {
 
 constexpr VerdictClass kClassConsistent = {"consistent", "=", "#b7dfc0"};
-constexpr VerdictClass kClassSlight = {"slightly off, within the margin", "~", "#f6e3a1"};
+constexpr VerdictClass kClassSlight = {"slightly off", "~", "#f6e3a1"};
 constexpr VerdictClass kClassOptimistic = {"optimistic", "+", "#ef8a76"};
 constexpr VerdictClass kClassConservative = {"conservative", "-", "#92bfe4"};
 constexpr VerdictClass kClassInconsistent = {"inconsistent otherwise", "!", "#c9a3d6"};

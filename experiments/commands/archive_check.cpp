@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <iterator>
 #include <memory>
 #include <unistd.h>
 
@@ -55,11 +56,16 @@ std::vector<ArchiveEntry> entries_named(const std::vector<std::string>& operands
   if (operands.empty()) return read_entries(shipped_archive());
   std::vector<ArchiveEntry> entries;
   for (const std::string& name : operands) {
+    std::vector<ArchiveEntry> some;
     if (!fs::is_directory(name)) {
-      entries.push_back(read_entry(name));
-      continue;
+      some.push_back(read_entry(name));
+    } else {
+      some = read_entries_of_world(name);
+      if (some.empty()) some = read_entries(name);
     }
-    for (ArchiveEntry& entry : read_entries(name)) entries.push_back(std::move(entry));
+    if (some.empty())
+      throw StudyError(name + ": holds no entry (WORLD/LABEL.json): name another folder");
+    std::ranges::move(some, std::back_inserter(entries));
   }
   return entries;
 }
@@ -196,8 +202,6 @@ std::vector<ArchiveEntry> of_their_studies(std::vector<ArchiveEntry> entries) {
 
 int verify_archive(const Arguments& arguments, std::uint64_t seed) {
   const std::vector<ArchiveEntry> all = entries_named(arguments.operands());
-  if (all.empty())
-    throw StudyError("verify: no entry there (WORLD/LABEL.json): name another folder");
   const std::vector<ArchiveEntry> entries = of_their_studies(all);
   std::vector<BlockOfEntry> blocks = shuffled_blocks(entries, seed);
   const std::uint64_t sample = arguments.count("sample", 1, UINT64_MAX).value_or(kUsualBlocks);

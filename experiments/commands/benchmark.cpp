@@ -122,12 +122,25 @@ RunOptions options_of(const BenchmarkWorker& worker, const BenchmarkTask& task) 
   return options;
 }
 
+/// Runs a study, or continues it. The error of work that another study began names it as well.
+RunOutcome run_or_continue(const BenchmarkTask& task, const StudyPlan& plan,
+                           const RunOptions& options) {
+  const bool is_begun = is_there(groups_of(options.output));
+  try {
+    return run_summed_study(plan, options);
+  } catch (const StudyError& error) {
+    if (!is_begun) throw;
+    throw StudyError(error.what() + std::string("; or give the filter another label, or remove ") +
+                     groups_of(task.result()).string());
+  }
+}
+
 /// Computes a result and writes its entry. Returns 0, or the exit code of a process that was
 /// stopped.
 int compute(const BenchmarkWorker& worker, const BenchmarkTask& task, WorkClaim& claim) {
   const Study study = worker.study(task);
   const StudyPlan plan = make_plan(study, std::nullopt, programs_of(study, worker.arguments));
-  RunOutcome outcome = run_summed_study(plan, options_of(worker, task));
+  RunOutcome outcome = run_or_continue(task, plan, options_of(worker, task));
   if (outcome.counts.missing > 0) {
     worker.say(task.name() + ": stopped at a checkpoint; the same command continues");
     claim.leave();
