@@ -147,14 +147,18 @@ void expect_group(const SumGroup& group, const ReadGroup& read) {
       read.sums.scores().runs() == group.complete);
 }
 
+/// Throws StudyError unless the words of a group are those of these sums.
+void expect_layout(const SumGroup& group, const CellSums& sums) {
+  if (group.layout == layout_of(sums)) return;
+  throw StudyError(
+      "its sums have another layout than those of this program: analyse it with "
+      "the montecarta that made it ('montecarta info' tells), or run the study "
+      "again");
+}
+
 ReadGroup read_group(const ResultFile& file, const SumGroup& group, const RunCriteria& criteria) {
   ReadGroup read{{}, CellSums(criteria)};
-  if (group.layout != layout_of(read.sums)) {
-    throw StudyError(
-        "its sums have another layout than those of this program: analyse it with "
-        "the montecarta that made it ('montecarta info' tells), or run the study "
-        "again");
-  }
+  expect_layout(group, read.sums);
   const Words words = unpacked(file.sums(group));
   SumReader reader(words);
   reader.get(read.runs);
@@ -162,6 +166,16 @@ ReadGroup read_group(const ResultFile& file, const SumGroup& group, const RunCri
   reader.expect_end();
   expect_group(group, read);
   return read;
+}
+
+/// Returns what `work` returns. Errors begin with the file and the cell.
+template <class Work>
+auto at_cell(const ResultFile& file, const StoredCell& cell, const Work& work) {
+  try {
+    return work();
+  } catch (const StudyError& error) {
+    throw StudyError("{}: cell '{}': {}", file.path(), cell.label, error.what());
+  }
 }
 
 void take_runs(const SumGroup& group, const RunsOfGroup& runs, StoredSums& all) {
@@ -179,11 +193,28 @@ void take_runs(const SumGroup& group, const RunsOfGroup& runs, StoredSums& all) 
 
 }  // namespace
 
+std::vector<std::uint64_t> fingerprints_in_sums(const ResultFile& file, const StoredCell& cell) {
+  std::vector<std::uint64_t> all;
+  const RunCriteria criteria = criteria_of(file, kStoredLevel);
+  return at_cell(file, cell, [&] {
+    for (const SumGroup& group : file.sum_groups(cell)) {
+      expect_layout(group, CellSums(criteria));
+      const Words words = unpacked(file.sums(group));
+      SumReader reader(words);
+      RunsOfGroup runs;
+      reader.get(runs);
+      SumReader::expect(runs.fingerprint.size() == group.runs);
+      append(all, runs.fingerprint);
+    }
+    return all;
+  });
+}
+
 StoredSums read_stored_sums(const ResultFile& file, const StoredCell& cell,
                             const RunCriteria& criteria, const Parallel& parallel) {
   const std::vector<SumGroup> groups = file.sum_groups(cell);
   StoredSums all{{}, {}, CellSums(criteria)};
-  try {
+  at_cell(file, cell, [&] {
     for_each_in_order(
         parallel, groups.size(),
         [&](std::size_t g) { return read_group(file, groups[g], criteria); },
@@ -191,9 +222,7 @@ StoredSums read_stored_sums(const ResultFile& file, const StoredCell& cell,
           take_runs(groups[g], group.runs, all);
           all.sums.merge(std::move(group.sums));
         });
-  } catch (const StudyError& error) {
-    throw StudyError("{}: cell '{}': {}", file.path(), cell.label, error.what());
-  }
+  });
   const std::vector<double> all_seconds = file.cpu_seconds_in_sums(cell);
   std::vector<double> seconds;
   for (const std::uint64_t run : all.complete)

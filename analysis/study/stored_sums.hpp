@@ -22,6 +22,10 @@ std::vector<NewGroup> sums_to_store(const ResultFile& rows, const Parallel& para
 /// [byte] Approximate size of the sums over `runs` runs of a cell with `scans` scans.
 double bytes_of_sums(std::uint64_t runs, std::size_t scans);
 
+/// {run} The fingerprints of all runs of a cell whose rows are not stored, complete or failed.
+/// Throws StudyError as read_stored_sums() does.
+std::vector<std::uint64_t> fingerprints_in_sums(const ResultFile& file, const StoredCell& cell);
+
 /// The sums of a cell of a file.
 struct StoredSums {
   std::vector<std::uint64_t> complete;  ///< numbers of the complete runs

@@ -75,13 +75,25 @@ int print_error(const std::string& message, int code) {
 }  // namespace
 
 std::vector<Command> all_commands() {
-  const std::map<std::string, CommandFunction*> functions = {
-      {"run", run_command},       {"check", check_command},     {"info", info_command},
-      {"status", status_command}, {"merge", merge_command},     {"analyze", analyze_command},
-      {"report", report_command}, {"compare", compare_command}, {"gate", gate_command},
-      {"verify", verify_command}, {"replay", replay_command},   {"bounds", bounds_command},
-      {"plan", plan_command},     {"tune", tune_command},       {"export", export_command},
-      {"judge", judge_command},   {"list", list_command},       {"work", work_command}};
+  const std::map<std::string, CommandFunction*> functions = {{"run", run_command},
+                                                             {"check", check_command},
+                                                             {"info", info_command},
+                                                             {"status", status_command},
+                                                             {"merge", merge_command},
+                                                             {"analyze", analyze_command},
+                                                             {"report", report_command},
+                                                             {"compare", compare_command},
+                                                             {"gate", gate_command},
+                                                             {"verify", verify_command},
+                                                             {"replay", replay_command},
+                                                             {"bounds", bounds_command},
+                                                             {"plan", plan_command},
+                                                             {"tune", tune_command},
+                                                             {"export", export_command},
+                                                             {"judge", judge_command},
+                                                             {"list", list_command},
+                                                             {"work", work_command},
+                                                             {"benchmark", benchmark_command}};
   std::vector<Command> commands;
   for (CommandSpec& spec : read_commands(commands_text())) {
     CommandFunction* const function = functions.at(spec.name);

@@ -18,7 +18,7 @@ using CommandFunction = int(const Arguments&);
 CommandFunction run_command, check_command, info_command, status_command, merge_command,
     analyze_command, report_command, compare_command, gate_command, verify_command, replay_command,
     bounds_command, plan_command, tune_command, export_command, judge_command, list_command,
-    work_command;
+    work_command, benchmark_command;
 
 /// One command of the program.
 struct Command {

@@ -7,6 +7,7 @@
 #include "engine/errors.hpp"
 #include "engine/formatted.hpp"
 #include "engine/text/wrapped_text.hpp"
+#include "experiments/commands/archive_comparison.hpp"
 #include "experiments/commands/arguments.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/output_path.hpp"
@@ -108,6 +109,9 @@ void print(const StudyAnalysis& study, const StudyComparison& comparison, bool w
 }  // namespace
 
 int compare_command(const Arguments& arguments) {
+  if (arguments.has("archive")) return compare_with_archive(arguments);
+  if (arguments.has("entries"))
+    throw StudyError("compare: --entries without --archive (it would have no effect): add it");
   const double level = arguments.number("level", 1e-9, 1.0 - 1e-9).value_or(kUsualLevel);
   const ResultFile file = open_stored(arguments.operands().front());
   const std::string baseline = baseline_of(arguments, file);

@@ -4,6 +4,7 @@
 #include "engine/records/fingerprint.hpp"
 #include "engine/runs/recompute.hpp"
 #include "engine/text/wrapped_text.hpp"
+#include "experiments/commands/archive_check.hpp"
 #include "experiments/commands/arguments.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/stored_result.hpp"
@@ -104,10 +105,20 @@ bool verify_sums(const ResultFile& file, const StudyPlan& plan, std::uint64_t se
   return are_equal;
 }
 
+/// Throws StudyError unless one file is named, and no option of archives.
+void require_one_result(const Arguments& arguments) {
+  if (arguments.operands().size() != 1)
+    throw StudyError("verify: one result is verified at a time: give one FILE.h5, or --archive");
+  if (arguments.has("whole"))
+    throw StudyError("verify: --whole is for archives (it would have no effect): add --archive");
+}
+
 }  // namespace
 
 int verify_command(const Arguments& arguments) {
   const std::uint64_t seed = seed_of(arguments);
+  if (arguments.has("archive")) return verify_archive(arguments, seed);
+  require_one_result(arguments);
   const std::uint64_t count = arguments.count("sample", 1, UINT64_MAX).value_or(kSample);
   const ResultFile file = open_stored(arguments.operands().front());
   const std::vector<StoredRun> stored = runs_stored(file);

@@ -41,6 +41,16 @@ std::optional<fs::path> shipped_file(const std::string& folder, const std::strin
   return std::nullopt;
 }
 
+fs::path shipped_folder(const std::string& folder) {
+  for (const fs::path& root : shipped_roots()) {
+    std::error_code none;
+    if (fs::is_directory(root / folder, none)) return root / folder;
+  }
+  throw StudyError(
+      "{}: not part of this installation: take the folder experiments/{} of the sources", folder,
+      folder);
+}
+
 std::vector<std::string> shipped_names(const std::string& folder, const std::string& ending) {
   std::set<std::string> names;
   for (const fs::path& root : shipped_roots()) {

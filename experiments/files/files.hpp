@@ -18,6 +18,10 @@ namespace montecarta::experiments {
 std::optional<std::filesystem::path> shipped_file(const std::string& folder,
                                                   const std::string& name);
 
+/// A folder that is shipped with montecarta, found as shipped_file() finds files. Throws StudyError
+/// if this installation has none.
+std::filesystem::path shipped_folder(const std::string& folder);
+
 /// Names, without `ending`, of the files with this ending in a shipped folder, in alphabetical
 /// order.
 std::vector<std::string> shipped_names(const std::string& folder, const std::string& ending);
