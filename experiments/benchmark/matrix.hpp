@@ -56,12 +56,6 @@ std::string legend_text(const Matrix& matrix);
 /// A table of the filters in one world: verdict, NEES ratio with its interval, errors and cost.
 TextTable world_table(const Matrix& matrix, std::size_t world);
 
-/// The matrix as a drawing (SVG).
-std::string matrix_figure(const Matrix& matrix);
-
-/// A self-contained page: the figure and a table for each world.
-std::string matrix_page(const Matrix& matrix);
-
 /// One row for each entry, with all numbers.
 Frame matrix_frame(const Matrix& matrix);
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Draws the matrix of a benchmark: a row for each filter, and a column for each world.
+#include "experiments/benchmark/matrix_figure.hpp"
+
 #include "analysis/render/page/drawing.hpp"
 #include "analysis/render/page/html.hpp"
 #include "engine/formatted.hpp"
 #include "engine/text/number_text.hpp"
-#include "experiments/benchmark/matrix.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>

@@ -9,6 +9,7 @@
 #include "experiments/benchmark/archive_entry.hpp"
 #include "experiments/benchmark/benchmark_study.hpp"
 #include "experiments/benchmark/matrix.hpp"
+#include "experiments/benchmark/matrix_figure.hpp"
 #include "experiments/commands/arguments.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/summed_study.hpp"

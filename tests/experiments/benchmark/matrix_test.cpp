@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/benchmark/matrix.hpp"
 
+#include "experiments/benchmark/matrix_figure.hpp"
 #include "tests/doubles/matchers.hpp"
 
 #include <gmock/gmock.h>
