@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "experiments/judging/state_columns.hpp"
+#include "experiments/judging/state_shape.hpp"
 
 #include <cstddef>
 #include <string>

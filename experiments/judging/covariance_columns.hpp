@@ -2,7 +2,7 @@
 #pragma once
 
 #include "experiments/judging/column_names.hpp"
-#include "experiments/judging/state_columns.hpp"
+#include "experiments/judging/state_shape.hpp"
 
 #include <string>
 

@@ -262,7 +262,10 @@ TEST(Words, SaySlightDeviationsAndWhatIsNotExcluded) {
   EXPECT_EQ(in_words(open), "undecided: many more runs decide");
   open.runs = 1;
   EXPECT_EQ(in_words(open), "undecided: take at least 10 runs");
-  EXPECT_THAT(sentence("a", open), HasSubstr("no fault is shown, and 1 run is too few to show that it is consistent within 1.1"));
+  EXPECT_THAT(
+      sentence("a", open),
+      HasSubstr(
+          "no fault is shown, and 1 run is too few to show that it is consistent within 1.1"));
   EXPECT_EQ(in_words(Verdict{}), "not tested");
 }
 

@@ -210,7 +210,8 @@ TEST_F(StateFiles, HaveTruthsAtTheTimesOfEstimatesOrBetween) {
   EXPECT_EQ(at({1.0 + 1e-7}, {})[0]->state, Eigen::Vector2d(-3, 10));
   EXPECT_THAT(use.notes(false), IsEmpty());
   EXPECT_EQ(at({0.1}, {.tolerance = 0.2})[0]->state, Eigen::Vector2d(3, 0));
-  EXPECT_THAT(use.notes(false), ElementsAre(HasSubstr("up to 0.1 s beside their estimates (est.csv")));
+  EXPECT_THAT(use.notes(false),
+              ElementsAre(HasSubstr("up to 0.1 s beside their estimates (est.csv")));
   const auto half = at({0.5}, {.interpolate = true})[0].value().state;
   EXPECT_NEAR(std::abs(half(0)), kPi, 1e-12);
   EXPECT_EQ(half(1), 5.0);
