@@ -8,8 +8,8 @@ import subprocess
 
 import yaml
 
-LANGUAGES = {".cpp": "cpp", ".hpp": "cpp", ".ini": "ini", ".m": "matlab", ".py": "python",
-             ".cff": "yaml"}
+LANGUAGES = {".cpp": "cpp", ".csv": "text", ".hpp": "cpp", ".ini": "ini", ".m": "matlab",
+             ".py": "python", ".cff": "yaml"}
 VERBATIM = {"experiments/commands/commands.md"}  # the program prints its sections as they stand
 PICTURES = {".svg", ".png"}
 

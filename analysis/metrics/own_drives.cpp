@@ -24,7 +24,7 @@ namespace montecarta::analysis {
 namespace {
 
 /// The findings on one drive alone.
-struct OwnDrive {
+struct JudgedDrive {
   /// By the leading reference; untested if it states no errors.
   DriveConsistency consistency;
   double nis = kNaN;              ///< NIS per component
@@ -32,7 +32,7 @@ struct OwnDrive {
 };
 
 /// {complete run} findings.
-using OwnDrives = std::vector<OwnDrive>;
+using OwnDrives = std::vector<JudgedDrive>;
 
 /// Keeps the findings of each run. Files of sums hold no recorded drives, so nothing is stored.
 class OwnDrivesOverRuns final : public MetricSums {
@@ -40,7 +40,7 @@ class OwnDrivesOverRuns final : public MetricSums {
   explicit OwnDrivesOverRuns(const RunCriteria& criteria) : criteria_(&criteria) {}
   void add(const MeasuredRun& run) override {
     if (criteria_->drives.empty()) return;
-    OwnDrive drive;
+    JudgedDrive drive;
     if (!run.drives.empty()) {
       drive.consistency =
           judge_drive(std::span(run.drives).first(1), criteria_->level, criteria_->within);
@@ -60,7 +60,7 @@ class OwnDrivesOverRuns final : public MetricSums {
   }
 
  private:
-  void judge_innovations(const MeasuredRun& run, OwnDrive& drive) const {
+  void judge_innovations(const MeasuredRun& run, JudgedDrive& drive) const {
     if (run.rows.nis.empty()) return;
     InnovationSums sums(run.times.size());
     sums.add(run.rows.run, run.times, run.rows.nis, run.rows.nis_dof);
@@ -74,7 +74,7 @@ class OwnDrivesOverRuns final : public MetricSums {
   OwnDrives drives_;
 };
 
-/// Calls visit(cell, number of the run, scores by the leading reference, OwnDrive) for every
+/// Calls visit(cell, number of the run, scores by the leading reference, JudgedDrive) for every
 /// complete run on a drive of its own.
 template <class Visit>
 void for_each_run(const StudyAnalysis& study, const Visit& visit) {
