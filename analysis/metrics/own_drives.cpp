@@ -31,6 +31,12 @@ struct JudgedDrive {
   std::string innovations = "-";  ///< whiteness and size in words
 };
 
+/// The NEES relative to its expectation; nullptr if it could not be judged.
+const CorrelatedAverage* judged_nees(const JudgedDrive& drive) {
+  const CorrelatedAverage& nees = drive.consistency.mean.leads();
+  return nees.effective_samples > 0.0 ? &nees : nullptr;
+}
+
 /// {complete run} findings.
 using OwnDrives = std::vector<JudgedDrive>;
 
@@ -92,14 +98,14 @@ TextTable own_drives_table(const StudyAnalysis& study) {
   TextTable table{.keys = 2};
   for_each_run(study, [&](const auto& cell, auto run, const auto& scores, const auto& drive) {
     const DriveScores& along = drive.consistency.mean;
-    const bool is_judged = drive.consistency.answer != Answer::untested;
+    const CorrelatedAverage* nees = judged_nees(drive);
     table.add(
         {{"cell", cell.label, Align::left},
          {"drive", std::to_string(run)},
          {"raw RMS [m]", readable(scores.rms)},
          {"heading RMSE [deg]", readable(scores.heading_rmse * 180.0 / kPi)},
          {"verdict", in_words(drive.consistency), Align::left, tone_of(drive.consistency.answer)},
-         {"NEES / expected", is_judged ? readable(along.leads().mean) : "-"},
+         {"NEES / expected", nees != nullptr ? readable(nees->mean) : "-"},
          {"fixes", std::to_string(along.fixes)},
          {"NIS per component", readable(drive.nis)},
          {"innovations", drive.innovations, Align::left}});
@@ -119,8 +125,8 @@ std::vector<Section> own_drives_sections(const StudyAnalysis& study) {
 Frame own_drives_frame(const StudyAnalysis& study) {
   Frame frame;
   for_each_run(study, [&](const auto& cell, auto run, const auto& scores, const auto& drive) {
-    const CorrelatedAverage& nees = drive.consistency.mean.leads();
-    const bool is_judged = nees.effective_samples > 0.0;
+    const CorrelatedAverage* nees = judged_nees(drive);
+    const Interval ratio = nees != nullptr ? nees->ratio : Interval{kNaN, kNaN};
     frame.add({{"cell", cell.label},
                {"filter", cell.filter},
                {"verdict", in_words(drive.consistency)},
@@ -129,9 +135,9 @@ Frame own_drives_frame(const StudyAnalysis& study) {
                {"rms", "m", scores.rms},
                {"heading_rmse", "rad", scores.heading_rmse},
                {"fixes", "1", static_cast<double>(drive.consistency.mean.fixes)},
-               {"nees_ratio", "1", is_judged ? nees.mean : kNaN},
-               {"nees_ratio_lower", "1", is_judged ? nees.ratio.lower : kNaN},
-               {"nees_ratio_upper", "1", is_judged ? nees.ratio.upper : kNaN},
+               {"nees_ratio", "1", nees != nullptr ? nees->mean : kNaN},
+               {"nees_ratio_lower", "1", ratio.lower},
+               {"nees_ratio_upper", "1", ratio.upper},
                {"nis_per_component", "1", drive.nis}});
   });
   return frame;

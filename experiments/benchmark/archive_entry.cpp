@@ -2,15 +2,17 @@
 #include "experiments/benchmark/archive_entry.hpp"
 
 #include "analysis/statistics/spread.hpp"
+#include "analysis/study/frame.hpp"
 #include "analysis/study/stored_sums.hpp"
 #include "analysis/study/study_analysis.hpp"
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "engine/records/fingerprint.hpp"
-#include "engine/records/open_result.hpp"
-#include "engine/records/posix_file.hpp"
 #include "experiments/benchmark/benchmark_study.hpp"
 #include "experiments/files/files.hpp"
 #include "experiments/text/words.hpp"
+
+#include <openssl/evp.h>
 
 #include <algorithm>
 #include <bit>
@@ -26,11 +28,9 @@ namespace fs = std::filesystem;
 
 constexpr int kFormat = 1;
 
-// A score is the upper 24 bits of its binary32 number, which are four characters of base 64.
+// A score is the upper 24 bits of its binary32 number, in base 64.
 constexpr unsigned kDroppedBits = 8;
-constexpr std::size_t kCharacters = 4;
-constexpr std::string_view kAlphabet =
-    "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+constexpr std::size_t kBytes = 3, kCharacters = 4;
 
 std::uint32_t code_of(double score) {
   const auto number = static_cast<float>(score);
@@ -45,27 +45,34 @@ double score_of(std::uint32_t code) {
 }
 
 std::string encoded(const std::vector<double>& scores) {
-  std::string text;
+  std::vector<unsigned char> bytes;
   for (const double score : scores) {
     const std::uint32_t code = code_of(score);
-    for (const unsigned shift : {18U, 12U, 6U, 0U}) text += kAlphabet[(code >> shift) & 63U];
+    for (const unsigned shift : {16U, 8U, 0U})
+      bytes.push_back(static_cast<unsigned char>(code >> shift));
   }
-  return text;
+  std::vector<unsigned char> text(kCharacters * scores.size() + 1);  // one for a zero at the end
+  EVP_EncodeBlock(text.data(), bytes.data(), static_cast<int>(bytes.size()));
+  return {text.begin(), text.end() - 1};
 }
 
 /// The scores in a text; empty if it is none.
-std::vector<double> decoded(std::string_view text) {
+std::vector<double> decoded(const std::string& text) {
+  const bool is_whole =
+      text.size() % kCharacters == 0 && text.find_first_of("= \t\r\n") == text.npos;
+  if (!is_whole) return {};
+  std::vector<unsigned char> bytes(text.size() / kCharacters * kBytes);
+  const int read =
+      EVP_DecodeBlock(bytes.data(), reinterpret_cast<const unsigned char*>(text.data()),
+                      static_cast<int>(text.size()));
+  if (read != static_cast<int>(bytes.size())) return {};
   std::vector<double> scores;
-  for (; text.size() >= kCharacters; text.remove_prefix(kCharacters)) {
-    std::uint32_t code = 0;
-    for (const char c : text.substr(0, kCharacters)) {
-      const std::size_t digit = kAlphabet.find(c);
-      if (digit == std::string_view::npos) return {};
-      code = code << 6U | static_cast<std::uint32_t>(digit);
-    }
+  for (std::size_t i = 0; i < bytes.size(); i += kBytes) {
+    const std::uint32_t code = std::uint32_t{bytes[i]} << 16U | std::uint32_t{bytes[i + 1]} << 8U |
+                               std::uint32_t{bytes[i + 2]};
     scores.push_back(score_of(code));
   }
-  return text.empty() ? scores : std::vector<double>();
+  return scores;
 }
 
 constexpr int kDigits = 6;  ///< significant digits of numbers other than scores
@@ -125,15 +132,9 @@ TextPairs made_by(const ResultFile& result) {
   return kept;
 }
 
-std::string hexadecimal_of(std::uint64_t number) {
-  std::array<char, 16> digits{};
-  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), number, 16).ptr;
-  return {digits.data(), end};
-}
-
 std::string text_of_blocks(const std::vector<std::uint64_t>& blocks) {
   std::vector<std::string> words;
-  for (const std::uint64_t block : blocks) words.push_back(hexadecimal_of(block));
+  for (const std::uint64_t block : blocks) words.push_back(formatted("{:x}", block));
   return joined(words, " ");
 }
 
@@ -254,11 +255,8 @@ fs::path path_of_entry(const fs::path& folder, const std::string& world, const s
 
 void write_entry(const ArchiveEntry& entry, const fs::path& folder) {
   const fs::path path = path_of_entry(folder, entry.world, entry.label);
-  fs::create_directories(path.parent_path());
-  const std::string text = text_of(entry);
-  PosixFile file(name_of_attempt(path), PosixFile::Mode::create);
-  file.write_at(0, std::as_bytes(std::span(text)));
-  file.rename(path, Existing::replace);
+  make_directory(path.parent_path());
+  write_text(path, text_of(entry));
 }
 
 namespace {
@@ -346,9 +344,9 @@ std::vector<ArchiveEntry> read_entries_of_world(const fs::path& folder) {
 
 std::vector<ArchiveEntry> read_entries(const fs::path& folder) {
   if (!fs::is_directory(folder)) {
-    throw StudyError(folder.string() +
-                     ": no such folder (an archive is a folder with WORLD/LABEL.json): correct the "
-                     "path");
+    throw StudyError(
+        "{}: no such folder (an archive is a folder with WORLD/LABEL.json): correct the path",
+        folder);
   }
   std::vector<ArchiveEntry> entries;
   for (const std::string& world : benchmark_worlds()) {

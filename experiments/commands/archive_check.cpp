@@ -11,13 +11,12 @@
 #include "experiments/benchmark/benchmark_study.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/summed_study.hpp"
+#include "experiments/files/passing_folder.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <iterator>
-#include <memory>
-#include <unistd.h>
 
 namespace montecarta::experiments {
 namespace {
@@ -25,28 +24,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint64_t kUsualBlocks = 10;
-
-/// A folder for results that are computed again, which is removed at the end.
-class ScratchResults {
- public:
-  ScratchResults()
-      : folder_(fs::temp_directory_path() / ("montecarta_verify_" + std::to_string(::getpid()))) {
-    fs::create_directories(folder_);
-  }
-  ~ScratchResults() {
-    std::error_code ignored;
-    fs::remove_all(folder_, ignored);
-  }
-  ScratchResults(const ScratchResults&) = delete;
-  ScratchResults& operator=(const ScratchResults&) = delete;
-
-  /// The name of a file that is not there.
-  fs::path next() { return folder_ / (std::to_string(++files_) + ".h5"); }
-
- private:
-  fs::path folder_;
-  int files_ = 0;
-};
 
 struct BlockOfEntry {
   const ArchiveEntry* entry;
@@ -65,7 +42,7 @@ std::vector<ArchiveEntry> entries_named(const std::vector<std::string>& operands
       if (some.empty()) some = read_entries(name);
     }
     if (some.empty())
-      throw StudyError(name + ": holds no entry (WORLD/LABEL.json): name another folder");
+      throw StudyError("{}: holds no entry (WORLD/LABEL.json): name another folder", name);
     std::ranges::move(some, std::back_inserter(entries));
   }
   return entries;
@@ -148,7 +125,7 @@ class ArchiveChecker {
   std::string difference(const ArchiveEntry& entry) {
     const Study study = benchmark_study(entry.world, entry.cell, entry.runs);
     const StudyPlan plan = make_plan(study, std::nullopt, programs_of(study, arguments_));
-    const RunOptions options = options_to(scratch_.next());
+    const RunOptions options = options_to_next_file();
     expect_all_runs(run_summed_study(plan, options));
     ArchiveEntry again = entry_of(ResultFile(options.output), entry.world, entry.cell, parallel_);
     again.made_by = entry.made_by;
@@ -157,9 +134,9 @@ class ArchiveChecker {
   }
 
  private:
-  RunOptions options_to(const fs::path& output) const {
+  RunOptions options_to_next_file() {
     RunOptions options;
-    options.output = output;
+    options.output = folder_.path() / formatted("{}.h5", ++files_);
     options.parallel = parallel_;
     options.progress = ProgressStyle::none;
     options.quiet = true;
@@ -176,14 +153,15 @@ class ArchiveChecker {
     StudyPlan plan = make_plan(study, std::nullopt, programs_of(study, arguments_));
     plan.first_run = first;
     plan.last_run = last;
-    const RunOptions options = options_to(scratch_.next());
+    const RunOptions options = options_to_next_file();
     expect_all_runs(run_study(plan, options));
     return options.output;
   }
 
   const Arguments& arguments_;
   Parallel parallel_;
-  ScratchResults scratch_;
+  PassingFolder folder_;
+  int files_ = 0;
 };
 
 /// Prints a difference, if there is one, and returns whether there is.
@@ -218,7 +196,7 @@ int verify_archive(const Arguments& arguments, std::uint64_t seed) {
   } else {
     for (const BlockOfEntry& block : blocks) differ += print_difference(checker.difference(block));
     std::cout << wrapped(formatted("{} of {} blocks of {} runs are reproduced byte for byte, out "
-                                   "of {} of {} entries (sample {})",
+                                   "of the {} blocks of {} entries (sample {})",
                                    blocks.size() - differ, blocks.size(), kRunsOfArchivedBlock,
                                    stored, entries.size(), seed),
                          output_width());

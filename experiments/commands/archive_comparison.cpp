@@ -22,9 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Components of a pose, the expected NEES.
-constexpr std::size_t kPoseComponents = 3;
-
 constexpr const char* kArchiveNote =
     "Filters are compared run by run, on the same drives with the same noise. 'difference' is the "
     "mean of the archived filter minus that of yours, with its 95 % interval; 'ratio' is the "
@@ -70,7 +67,7 @@ CellAnalysis cell_of(const ArchiveEntry& entry) {
     cell.scores.add(values);
   }
   cell.complete = cell.runs.size();
-  cell.nees.emplace_back().series.dimension = kPoseComponents;
+  cell.nees.emplace_back().series.dimension = 3;  // of a pose
   return cell;
 }
 

@@ -92,6 +92,9 @@ RunRange shard_of(const Settings& settings, const std::string& shard);
 /// Makes the plan of `study`, restricted by --runs or --shard, with external programs if
 /// --allow-external was given.
 StudyPlan plan_of(const Study& study, const Arguments& arguments);
+/// [s] Shortest --time-budget. With a budget of zero no run would ever be done, and a script that
+/// resumes would never end.
+inline constexpr double kLeastBudget = 0.001;
 /// Threads and backend as set by --threads, --backend and the environment.
 Parallel parallel_of(const Arguments& arguments);
 /// The provenance that is stored in a file that `command` makes: build, machine, command line,

@@ -12,8 +12,8 @@
 #include "experiments/benchmark/matrix_figure.hpp"
 #include "experiments/commands/arguments.hpp"
 #include "experiments/commands/commands.hpp"
+#include "experiments/commands/shared_work.hpp"
 #include "experiments/commands/summed_study.hpp"
-#include "experiments/commands/work_claim.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>
@@ -25,9 +25,6 @@ namespace montecarta::experiments {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr double kUsualPatience = 60.0;  ///< [s] as for `work`
-constexpr double kLeastSitting = 0.001;  ///< [s] shortest time budget
 
 /// One filter in one world, with the file that says that it is done.
 struct BenchmarkTask {
@@ -41,19 +38,13 @@ struct BenchmarkTask {
 
 /// What one process does in a folder, perhaps beside others.
 struct BenchmarkWorker {
-  const Arguments& arguments;
+  SharedWork work;
   fs::path folder;
-  Stopwatch stopwatch = {};
 
-  double patience() const {
-    return arguments.number("patience", 0.1, 1e6).value_or(kUsualPatience);
-  }
-  std::optional<std::uint64_t> runs() const { return arguments.count("runs", 3, 1'000'000); }
+  const Arguments& arguments() const { return work.arguments(); }
+  std::optional<std::uint64_t> runs() const { return arguments().count("runs", 3, 1'000'000); }
   Study study(const BenchmarkTask& task) const {
     return benchmark_study(task.world, task.filter.cell, runs());
-  }
-  void say(const std::string& line) const {
-    if (!arguments.has("quiet")) std::cerr << "montecarta: " << line << "\n";
   }
 };
 
@@ -89,9 +80,9 @@ std::vector<BenchmarkFilter> filters_to_run(const Arguments& arguments) {
 /// filter.
 std::vector<BenchmarkTask> tasks_of(const BenchmarkWorker& worker) {
   std::vector<BenchmarkTask> tasks;
-  for (const BenchmarkFilter& filter : filters_to_run(worker.arguments)) {
+  for (const BenchmarkFilter& filter : filters_to_run(worker.arguments())) {
     const std::size_t before = tasks.size();
-    const std::vector<std::string> worlds = worlds_of(worker.arguments);
+    const std::vector<std::string> worlds = worlds_of(worker.arguments());
     for (const std::string& world : worlds) {
       if (suits(world, filter.cell))
         tasks.push_back({filter, world, path_of_entry(worker.folder, world, filter.label)});
@@ -105,24 +96,10 @@ std::vector<BenchmarkTask> tasks_of(const BenchmarkWorker& worker) {
 void require_same_study(const BenchmarkWorker& worker, const BenchmarkTask& task) {
   const ArchiveEntry entry = read_entry(task.entry);
   if (entry.study_sha256 == sha256(resolved_text(worker.study(task)))) return;
-  throw StudyError(task.entry.string() +
-                   ": holds the result of another study (of other runs, or of another filter with "
-                   "this label): choose another folder, or another label");
-}
-
-RunOptions options_of(const BenchmarkWorker& worker, const BenchmarkTask& task) {
-  RunOptions options;
-  options.output = task.result();
-  options.parallel = parallel_of(worker.arguments);
-  options.attempt = true;
-  options.time_budget = worker.arguments.number("time-budget", kLeastSitting, 1e9);
-  if (options.time_budget)
-    *options.time_budget =
-        std::max(kLeastSitting, *options.time_budget - worker.stopwatch.seconds());
-  options.progress = ProgressStyle::none;
-  options.quiet = true;
-  options.provenance = provenance_of("benchmark", worker.arguments);
-  return options;
+  throw StudyError(
+      "{}: holds the result of another study (of other runs, or of another filter with this "
+      "label): choose another folder, or another label",
+      task.entry);
 }
 
 /// Runs a study, or continues it. The error of work that another study began names it as well.
@@ -133,45 +110,34 @@ RunOutcome run_or_continue(const BenchmarkTask& task, const StudyPlan& plan,
     return run_summed_study(plan, options);
   } catch (const StudyError& error) {
     if (!is_begun) throw;
-    throw StudyError(error.what() + std::string("; or give the filter another label, or remove ") +
-                     groups_of(task.result()).string());
+    throw StudyError("{}; or give the filter another label, or remove {}", error.what(),
+                     groups_of(task.result()));
   }
 }
 
 /// Computes a result and writes its entry. Returns 0, or the exit code of a process that was
 /// stopped.
 int compute(const BenchmarkWorker& worker, const BenchmarkTask& task, WorkClaim& claim) {
+  const SharedWork& work = worker.work;
   const Study study = worker.study(task);
-  const StudyPlan plan = make_plan(study, std::nullopt, programs_of(study, worker.arguments));
-  RunOutcome outcome = run_or_continue(task, plan, options_of(worker, task));
-  if (outcome.counts.missing > 0) {
-    worker.say(task.name() + ": stopped at a checkpoint; the same command continues");
-    claim.leave();
-    return exit_code(outcome, runs_under_scheduler());
-  }
+  const StudyPlan plan = make_plan(study, std::nullopt, programs_of(study, work.arguments()));
+  RunOptions options = work.options_to(task.result());
+  options.quiet = true;
+  const RunOutcome outcome = run_or_continue(task, plan, options);
+  if (outcome.counts.missing > 0) return work.leave(outcome, task.name(), claim);
   write_entry(entry_of(ResultFile(task.result()), task.world, task.filter.cell,
-                       parallel_of(worker.arguments)),
+                       parallel_of(work.arguments())),
               worker.folder);
-  worker.say(formatted("{}: {} runs in {}", task.name(), outcome.counts.ended(),
-                       duration_text(outcome.seconds)));
-  if (outcome.signal == StopReason::complete) return kDone;
-  outcome.stopped = outcome.signal;
-  return exit_code(outcome, runs_under_scheduler());
+  work.say(formatted("{}: {} runs in {}", task.name(), outcome.counts.ended(),
+                     duration_text(outcome.seconds)));
+  return work.finish(outcome);
 }
 
-/// Makes a claimed result, and removes the claims on it. Returns as compute() does.
+/// Makes a result that is claimed, and removes the claims on it. Returns as compute() does.
 int make_claimed(const BenchmarkWorker& worker, const BenchmarkTask& task,
                  std::unique_ptr<WorkClaim> claim) {
-  int code = kDone;
-  try {
-    if (!is_there(task.entry)) code = compute(worker, task, *claim);
-  } catch (const std::exception& error) {
-    claim->fail(error.what());
-    throw;
-  }
-  claim.reset();
-  if (is_there(task.entry)) remove_claims(task.entry);
-  return code;
+  return SharedWork::make_claimed(std::move(claim),
+                                  [&](WorkClaim& own) { return compute(worker, task, own); });
 }
 
 /// The tasks without an entry, by the path of the entry.
@@ -194,19 +160,20 @@ int run_tasks(const BenchmarkWorker& worker, std::span<const BenchmarkTask> task
   for (const BenchmarkTask& task : tasks) {
     fs::create_directories(task.entry.parent_path());
     if (is_there(task.entry)) require_same_study(worker, task);
-    programs_of(worker.study(task), worker.arguments);
+    programs_of(worker.study(task), worker.arguments());
   }
   for (const BenchmarkTask& task : tasks) {
     if (is_there(task.entry)) continue;
-    auto claim = claim_free({task.entry}, worker.patience());
+    auto claim = claim_free({task.entry}, worker.work.patience());
     if (!claim) continue;
     const int code = make_claimed(worker, task, std::move(claim));
     if (code != kDone) return code;
   }
   for (auto missing = missing_of(tasks); !missing.empty(); missing = missing_of(tasks)) {
-    ClaimSearch found = watch_others(paths_in(missing), worker.patience());
+    ClaimSearch found = watch_others(paths_in(missing), worker.work.patience());
     if (!found.claim) {
-      worker.say(formatted(
+      if (!found.given_up.empty()) refuse_to_begin(found.given_up, "benchmark");
+      worker.work.say(formatted(
           "other processes are at {} results; the same command continues if they are ended",
           missing.size()));
       return kDone;
@@ -221,7 +188,7 @@ int run_tasks(const BenchmarkWorker& worker, std::span<const BenchmarkTask> task
 /// The entries of the folder and, if asked for, those of the archive that the folder has not.
 std::vector<ArchiveEntry> entries_to_draw(const BenchmarkWorker& worker) {
   std::vector<ArchiveEntry> entries = read_entries(worker.folder);
-  if (!worker.arguments.has("archive")) return entries;
+  if (!worker.arguments().has("archive")) return entries;
   for (ArchiveEntry& archived : read_entries(shipped_archive())) {
     const bool is_mine = std::ranges::any_of(entries, [&](const ArchiveEntry& mine) {
       return mine.world == archived.world && mine.label == archived.label;
@@ -234,15 +201,16 @@ std::vector<ArchiveEntry> entries_to_draw(const BenchmarkWorker& worker) {
 void draw(const BenchmarkWorker& worker) {
   const std::vector<ArchiveEntry> entries = entries_to_draw(worker);
   if (entries.empty()) {
-    throw StudyError(worker.folder.string() +
-                     ": holds no result of the benchmark (WORLD/LABEL.json): run it without "
-                     "--draw, or choose another folder");
+    throw StudyError(
+        "{}: holds no result of the benchmark (WORLD/LABEL.json): run it without --draw, or choose "
+        "another folder",
+        worker.folder);
   }
   const Matrix matrix = matrix_of(entries);
   const std::size_t width = output_width();
   print_table(std::cout, ratio_table(matrix), width);
   std::cout << "\n" << wrapped(legend_text(matrix), width);
-  const fs::path folder = worker.arguments.text("output").value_or(worker.folder.string());
+  const fs::path folder = worker.arguments().text("output").value_or(worker.folder.string());
   make_directory(folder);
   write_text(folder / "matrix.svg", matrix_figure(matrix));
   write_text(folder / "index.html", matrix_page(matrix));
@@ -253,7 +221,7 @@ void draw(const BenchmarkWorker& worker) {
 }  // namespace
 
 int benchmark_command(const Arguments& arguments) {
-  const BenchmarkWorker worker{arguments, arguments.operands().front()};
+  const BenchmarkWorker worker{SharedWork(arguments, "benchmark"), arguments.operands().front()};
   if (!arguments.has("draw")) {
     const int code = run_tasks(worker, tasks_of(worker));
     if (code != kDone) return code;

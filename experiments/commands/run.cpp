@@ -21,10 +21,6 @@
 namespace montecarta::experiments {
 namespace {
 
-/// [s] Shortest time budget. With a budget of zero no run would ever be done, and a script that
-/// resumes would never end.
-constexpr double kLeastBudget = 0.001;
-
 ProgressStyle progress_of(const Arguments& arguments) {
   const auto style = arguments.text("progress");
   return style == "plain"  ? ProgressStyle::plain

@@ -15,6 +15,7 @@
 #include "experiments/commands/arguments.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/output_path.hpp"
+#include "experiments/files/passing_folder.hpp"
 #include "experiments/study/make_plan.hpp"
 #include "experiments/text/words.hpp"
 #include "experiments/tuning/noise_confirmation.hpp"
@@ -22,7 +23,6 @@
 
 #include <filesystem>
 #include <iostream>
-#include <unistd.h>
 
 namespace montecarta::experiments {
 namespace {
@@ -67,25 +67,6 @@ std::uint64_t seed_to_confirm(const Study& study, const Arguments& arguments) {
       "give another one",
       seed);
 }
-
-/// A folder of its own, which is removed in the end.
-class PassingFolder {
- public:
-  PassingFolder()
-      : path_(fs::temp_directory_path() / ("montecarta_tune_" + std::to_string(::getpid()))) {
-    fs::create_directories(path_);
-  }
-  ~PassingFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  PassingFolder(const PassingFolder&) = delete;
-  PassingFolder& operator=(const PassingFolder&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 /// Runs the confirming study, stores it in `file` and returns its analysis.
 StudyAnalysis analysis_of(const StudyPlan& plan, const fs::path& file, const Arguments& arguments) {

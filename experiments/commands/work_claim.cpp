@@ -112,10 +112,12 @@ void WorkClaim::stop() {
 
 void WorkClaim::leave() {
   stop();
+  left_ = true;
   replace_text(claim_, formatted("{} by {}\n", kLeftText, name_of_process()));
 }
 
 void WorkClaim::fail(const std::string& reason) {
+  if (left_) return;
   stop();
   replace_text(claim_, formatted("{} on {}: {}\n", kFailedText, name_of_process(), reason));
 }

@@ -51,7 +51,7 @@ class WorkClaim {
   const std::filesystem::path& file() const { return file_; }
   /// Leaves the file to any other worker, after a checkpoint.
   void leave();
-  /// Says why the work failed.
+  /// Says why the work failed, unless the file was left.
   void fail(const std::string& reason);
 
  private:
@@ -62,7 +62,7 @@ class WorkClaim {
   std::filesystem::path file_, claim_;
   std::mutex mutex_;
   std::condition_variable wake_;
-  bool over_ = false;
+  bool over_ = false, left_ = false;
   std::thread thread_;
 };
 
