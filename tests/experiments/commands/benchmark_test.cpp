@@ -47,6 +47,18 @@ TEST_F(Benchmark, RunsEveryFilterWhereTheWorldSuitsItAndDraws) {
   EXPECT_THAT(called.out, HasSubstr("the world does not suit the filter"));
 }
 
+TEST_F(Benchmark, NamesAResultThatNoProcessMayBeginAgain) {
+  std::filesystem::create_directories(folder_ / "out/corridor_easy");
+  for (int i = 1; i <= 5; ++i) {
+    write("out/corridor_easy/a.json.claim." + std::to_string(i),
+          "failed on ghost 17: its reason\n");
+  }
+  const Called called = run("out", {"--world", "corridor_easy", "--patience", "0.2"});
+  EXPECT_EQ(called.code, 1);
+  EXPECT_THAT(called.err, HasSubstr("a.json.claim.*: failed on ghost 17: its reason"));
+  EXPECT_TRUE(exists("out/corridor_easy/b.json")) << "others are made";
+}
+
 TEST_F(Benchmark, HasTheSameResultsOnAnyNumberOfThreadsAndAfterAKill) {
   ASSERT_EQ(run("one", {"--threads", "1"}).code, 0);
   std::vector<std::string> words = {"benchmark", "two",     "--runs",       "70",
