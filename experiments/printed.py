@@ -437,10 +437,13 @@ def counted(number, noun):
 def claim_in_words(claim):
     relation = {"<": "is less than", ">": "is greater than",
                 "~": "differs by less than 10 % from"}[claim["relation"]]
-    of = "" if "number" in claim else "that of "
+    right = claim["against"]
+    if "right" in claim:
+        times = "" if claim["factor"] == 1.0 else f"{claim['factor']:g} times "
+        right = f"{times}that of {claim['right']}"
     where = f" ({claim['note']})" if claim["note"] else ""
     metric = claim["metric"].replace("_", " ").replace("-", " minus ")
-    return f"the {metric} of {claim['left']} {relation} {of}{claim['against']}{where}"
+    return f"the {metric} of {claim['left']} {relation} {right}{where}"
 
 
 def tally(judgements, *beginnings):

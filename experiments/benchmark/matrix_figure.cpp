@@ -120,8 +120,10 @@ std::string matrix_figure(const Matrix& matrix) {
 
 std::string matrix_page(const Matrix& matrix) {
   std::string body = "<h1>Which filter is consistent where</h1>\n";
-  body += inline_svg(matrix_figure(matrix), "matrix",
-                     "A row for each filter and a column for each world, coloured by the verdict");
+  body += formatted(
+      "<figure>\n<div class=\"scroll\">{}</div>\n</figure>\n",
+      inline_svg(matrix_figure(matrix), "matrix",
+                 "A row for each filter and a column for each world, coloured by the verdict"));
   for (std::size_t w = 0; w < matrix.worlds.size(); ++w) {
     body += formatted("<h2>{}</h2>\n", html_escape(matrix.worlds[w]));
     body += html_table(world_table(matrix, w));
