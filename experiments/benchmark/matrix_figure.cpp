@@ -74,14 +74,15 @@ double draw_legend(const Matrix& matrix, double top, Drawing& drawing) {
       });
     });
     if (!occurs) continue;
-    const double x = kMargin + 205.0 * static_cast<double>(drawn % kLegendColumns);
-    const double y = top + kLegendLine * std::floor(static_cast<double>(drawn / kLegendColumns));
+    const std::size_t column = drawn % kLegendColumns, line = drawn / kLegendColumns;
+    const double x = kMargin + 205.0 * static_cast<double>(column);
+    const double y = top + kLegendLine * static_cast<double>(line);
     drawing.rectangle({x, y, 14.0, 14.0}, formatted("fill=\"{}\"", one.colour));
     drawing.text(x + 20.0, y + 11.5, one.name, kNote);
     ++drawn;
   }
-  const auto lines = static_cast<double>((drawn + kLegendColumns - 1) / kLegendColumns);
-  const double y = top + kLegendLine * lines + 12.0;
+  const std::size_t lines = (drawn + kLegendColumns - 1) / kLegendColumns;
+  const double y = top + kLegendLine * static_cast<double>(lines) + 12.0;
   drawing.text(kMargin, y,
                "Bold: NEES ratio, 1 if squared errors are as large as claimed. "
                "\u00d7: position RMSE relative to full smoothing.",

@@ -49,7 +49,7 @@ struct BenchmarkWorker {
 };
 
 std::vector<std::string> worlds_of(const Arguments& arguments) {
-  const std::vector<std::string> all = benchmark_worlds();
+  std::vector<std::string> all = benchmark_worlds();
   const auto names = arguments.text("world");
   if (!names) return all;
   std::vector<std::string> chosen = split(*names, ',');

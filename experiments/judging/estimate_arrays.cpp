@@ -86,7 +86,7 @@ EstimateArrays::EstimateArrays(std::filesystem::path path, std::string cell,
   if (nis_dof_) require_axes(*nis_dof_, {runs, scans}, "{run, scan}");
   runs_.resize(runs);
   std::iota(runs_.begin(), runs_.end(), std::uint64_t{0});
-  shape_ = shape_of_names(names);
+  shape_ = shape_of_names(names_of_columns(names));
 }
 
 /// Throws StudyError if MATLAB or Julia wrote the arrays, which turn the order of axes round.
@@ -145,30 +145,36 @@ void EstimateArrays::require_axes(const Array& array, const h5::Shape& wanted,
                 axes_text(array.shape), axes, axes_text(wanted)));
 }
 
-/// The shape of the state by names, or else by the attribute `names`; without it the columns are
-/// e0, e1, ...
-StateShape EstimateArrays::shape_of_names(const std::optional<std::string>& given) const {
-  const auto width = static_cast<std::size_t>(states_.shape[2]);
-  const auto d = static_cast<std::size_t>(covariance_.shape[2]);
+/// The names of the columns: those given, or else those of the attribute `names`, or else e0, e1,
+/// ...
+std::vector<std::string> EstimateArrays::names_of_columns(
+    const std::optional<std::string>& given) const {
+  if (given) return split(*given, ',');
   std::vector<std::string> columns;
-  if (given) {
-    columns = split(*given, ',');
-  } else if (const auto names = file_.texts("names")) {
+  if (const auto names = file_.texts("names")) {
     for (const std::string& text : *names) {
       for (const std::string& name : split(text, ',')) columns.push_back(name);
     }
     if (columns.empty()) refuse("names", "are no texts: write x_m,y_m or a list of texts");
   } else if (file_.has("names")) {
-    refuse("names",
-           "is an array (a text attribute of the file is needed): write it as one, or give " +
-               std::string("--names"));
+    refuse(
+        "names",
+        "is an array (a text attribute of the file is needed): write it as one, or give --names");
   } else if (!has_errors()) {
     refuse("names",
            "is missing (mean has columns, such as x_m,y_m,heading_rad): write it as a text "
            "attribute of the file, or give --names");
   } else {
-    for (std::size_t k = 0; k < width; ++k) columns.push_back("e" + std::to_string(k));
+    const auto width = static_cast<std::size_t>(states_.shape[2]);
+    for (std::size_t k = 0; k < width; ++k) columns.push_back(formatted("e{}", k));
   }
+  return columns;
+}
+
+/// The shape of a state with columns of these names.
+StateShape EstimateArrays::shape_of_names(const std::vector<std::string>& columns) const {
+  const auto width = static_cast<std::size_t>(states_.shape[2]);
+  const auto d = static_cast<std::size_t>(covariance_.shape[2]);
   const auto is_unprintable = [](const std::string& name) { return name != visible(name); };
   if (std::ranges::any_of(columns, is_unprintable)) {
     refuse("names", "have characters that cannot be printed: write plain names");

@@ -52,7 +52,8 @@ class EstimateArrays final : public EstimateSource {
   void require_axes(const Array& array, const h5::Shape& wanted, std::string_view axes) const;
   /// Throws StudyError that names the array.
   [[noreturn]] void refuse(const std::string& name, const std::string& reason) const;
-  StateShape shape_of_names(const std::optional<std::string>& names) const;
+  std::vector<std::string> names_of_columns(const std::optional<std::string>& given) const;
+  StateShape shape_of_names(const std::vector<std::string>& columns) const;
   /// The numbers of one run, or all if the array has no axis of runs.
   std::vector<double> numbers(const Array& array, std::size_t run) const;
   StateRows states_of(const Array& array, std::size_t run, const std::string& place) const;
