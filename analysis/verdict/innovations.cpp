@@ -43,7 +43,9 @@ double white_deviate_of_nis(double level, double pairs, double components) {
   return std::max(white_deviate(level), z + corrected * (z * z - 1.0) / 6.0);
 }
 
-bool is_innovation(double nis, std::uint32_t dof) { return dof > 0 && std::isfinite(nis); }
+bool is_innovation(double nis, std::uint32_t dof) {
+  return dof > 0 && nis >= 0.0 && std::isfinite(nis);
+}
 
 /// The normal score of a chi-square variable (Wilson and Hilferty 1931), also where its tail is too
 /// small for a double.

@@ -261,9 +261,12 @@ ProgramEstimate read_estimate(std::string_view line, std::uint64_t id) {
                         .y = finite_number(mean[1], "mean"),
                         .heading = wrap(finite_number(mean[2], "mean"))};
   estimate.pose.covariance = covariance_in(member(answer, "covariance"));
+  const double nis = optional_number(answer, "nis");
+  if (nis < 0.0)
+    refuse_answer("nis is negative: is the innovation's covariance positive definite?");
   estimate.report = {.ess = optional_number(answer, "ess"),
                      .log_likelihood = optional_number(answer, "log_likelihood"),
-                     .nis = optional_number(answer, "nis"),
+                     .nis = nis,
                      .nis_dof = optional_count(answer, "nis_dof"),
                      .map_size = optional_number(answer, "map_size")};
   return estimate;

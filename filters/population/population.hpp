@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -191,12 +192,17 @@ class MixtureInnovations {
   }
 
   /// Adds to the NIS every detection, of `components` numbers, that particles with at least half of
-  /// the weight have matched.
+  /// the weight have matched. One whose covariance is not positive definite is left out, and counts
+  /// as a numerical fault.
   void add_to(const StepContext& context, ScanReport& report, std::size_t components = 2) {
     context.parallel_for(matched_.size(),
                          [&](std::size_t k) { squared_[k] = normalised_squared(k); });
     for (std::size_t k = 0; k < matched_.size(); ++k) {
       if (matched_[k] < 0.5) continue;
+      if (!(squared_[k] >= 0.0 && squared_[k] <= std::numeric_limits<double>::max())) {
+        ++report.numerical_faults;
+        continue;
+      }
       report.nis += squared_[k];
       report.nis_dof += static_cast<std::uint32_t>(components);
     }

@@ -154,6 +154,11 @@ TEST(Innovations, ThatAreNoNumbersAreLeftOut) {
   EXPECT_TRUE(std::isnan(found.average[1]));
 }
 
+TEST(Innovations, ThatAreNegativeAreLeftOut) {
+  const Innovations found = innovations_of_run({2.0, -1e32, 6.0}, {2, 2, 2});
+  EXPECT_DOUBLE_EQ(found.verdict.ratio_estimate(), 2.0);
+}
+
 TEST(Innovations, ScansWithoutDetectionsAreLeftOut) {
   InnovationSums sums(3);
   EXPECT_TRUE(sums.empty());

@@ -79,7 +79,8 @@ TEST(Answer, WhatIsWrongIsSaidAndASingularCovarianceIsNot) {
       {with_covariance("[[1e300,1e300,0],[1e300,1e-300,0],[0,0,1]]"), "beyond all bounds"},
       {kGood + R"(,"nis_dof":-1})", "nis_dof is no whole number from 0: -1"},
       {kGood + R"(,"nis_dof":1e99})", "nis_dof is no whole number"},
-      {kGood + R"(,"nis":null})", "nis is not a number"}};
+      {kGood + R"(,"nis":null})", "nis is not a number"},
+      {kGood + R"(,"nis":-1e-3})", "nis is negative"}};
   for (const auto& [line, expected] : cases) EXPECT_THAT(reason(line), HasSubstr(expected)) << line;
   EXPECT_EQ(reason(with_covariance("[[0,0,0],[0,0,0],[0,0,0]]")), "nothing");
   EXPECT_EQ(reason(with_covariance("[[1,1,0],[1,1,0],[0,0,1e-12]]")), "nothing");

@@ -35,5 +35,29 @@ TEST(CloudMoments, MoveAsEveryPoseDoesHoweverWideTheCloud) {
   }
 }
 
+/// What is reported of a scan with one detection that has this innovation.
+ScanReport report_of(Measurement<double> value, Symmetric2<double> S) {
+  MixtureInnovations<double> innovations;
+  innovations.start(kContext, 1, 1, 1.0);
+  innovations.of_block(0, 1.0).add(0, {value, S}, AllLanes());
+  ScanReport report;
+  innovations.add_to(kContext, report);
+  return report;
+}
+
+TEST(MixtureInnovations, WithoutAPositiveDefiniteCovarianceAreNumericalFaults) {
+  const ScanReport good = report_of({0.2, 0.0}, {0.04, 0.0, 1.0});
+  EXPECT_DOUBLE_EQ(good.nis, 1.0);
+  EXPECT_EQ(good.nis_dof, 2U);
+  EXPECT_EQ(good.numerical_faults, 0U);
+  for (const ScanReport& bad : {report_of({0.2, 0.0}, {1.0, 2.0, 1.0}),
+                                report_of({1e16, 1e15}, {0.01, 0.0, 0.01}),  // lost in rounding
+                                report_of({0.2, 0.0}, {0.0, 0.0, 0.0})}) {
+    EXPECT_EQ(bad.nis, 0.0);
+    EXPECT_EQ(bad.nis_dof, 0U);
+    EXPECT_EQ(bad.numerical_faults, 1U);
+  }
+}
+
 }  // namespace
 }  // namespace montecarta::filters
