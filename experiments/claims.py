@@ -17,10 +17,11 @@ per line, as the .printed files have (printed.py):
 
 `compare` takes the answer from a column of a table of results/PAGE.md, for what printed.py has not
 compared: the first number of each cell with its 95 % interval, or with the standard error behind
-+-. The right side may be a number. It is decided where the intervals do not overlap. `settings` are
-what the paper prints, with the names of the study file; those of a cell begin with its label.
-`open` is not measured yet, and `never` cannot be measured. `headline` is named in the first
-sentences if it is contradicted; its second word is the name of a comparison in the tables.
++-. The right side may be a number, or FACTOR*LABEL. It is decided where the intervals do not
+overlap. `settings` are what the paper prints, with the names of the study file; those of a cell
+begin with its label. `open` is not measured yet, and `never` cannot be measured. `headline` is
+named in the first sentences if it is contradicted; its second word is the name of a comparison in
+the tables.
 """
 import argparse
 import glob
@@ -314,10 +315,12 @@ class Ledger:
     def compared(self, claim):
         page = self.page(claim["page"])
         left = page.number(claim["column"], claim["left"])
-        if re.match(r"[\d.]+$", claim["right"]):
-            right, against = [float(claim["right"])] * 3, ""
+        side = printed.RIGHT_SIDE.match(claim["right"])
+        if side["number"]:
+            right, against = [float(side["number"])] * 3, ""
         else:
-            right = page.number(claim["column"], claim["right"])
+            right = [float(side["factor"] or 1) * end
+                     for end in page.number(claim["column"], side["label"])]
             against = " against " + of_numbers(right)
         name = f"{claim['column']}: {claim['left']} {claim['relation']} {claim['right']}"
         return row_of(f"{claim['says']}; {name}", claim["where"], of_numbers(left) + against,

@@ -36,13 +36,22 @@ double position_mean(const MeasuredRun& run) {
   return mean_root(run, run.metrics.squared_position());
 }
 
-/// Mean position error in a quarter of the scans, the first of which is quarter 0.
+/// Mean error in a quarter of the scans, the first of which is quarter 0, by its squares.
 template <std::size_t kQuarter>
-double position_mean_in_quarter(const MeasuredRun& run) {
-  const std::span<const double> squares = run.metrics.squared_position();
+double mean_root_in_quarter(const MeasuredRun& run, std::span<const double> squares) {
   const std::size_t from = kQuarter * squares.size() / 4;
   const std::size_t to = (kQuarter + 1) * squares.size() / 4;
   return mean_root(run, squares.subspan(from, to - from));
+}
+
+template <std::size_t kQuarter>
+double position_mean_in_quarter(const MeasuredRun& run) {
+  return mean_root_in_quarter<kQuarter>(run, run.metrics.squared_position());
+}
+
+template <std::size_t kQuarter>
+double heading_mean_in_quarter(const MeasuredRun& run) {
+  return mean_root_in_quarter<kQuarter>(run, run.metrics.squared_heading());
 }
 
 double position_median(const MeasuredRun& run) {
@@ -80,6 +89,14 @@ constexpr Score kErrorsScores[] = {
     {"heading_mse", "rad2", "heading MSE", heading_mse},
     {"heading_error", "rad", "mean absolute heading error",
      [](const MeasuredRun& run) { return mean_root(run, run.metrics.squared_heading()); }},
+    {"heading_error_quarter1", "rad",
+     "mean absolute heading error in the first quarter of the scans", heading_mean_in_quarter<0>},
+    {"heading_error_quarter2", "rad",
+     "mean absolute heading error in the second quarter of the scans", heading_mean_in_quarter<1>},
+    {"heading_error_quarter3", "rad",
+     "mean absolute heading error in the third quarter of the scans", heading_mean_in_quarter<2>},
+    {"heading_error_quarter4", "rad",
+     "mean absolute heading error in the last quarter of the scans", heading_mean_in_quarter<3>},
 };
 
 constexpr ScanSeries kErrorsSeries[] = {

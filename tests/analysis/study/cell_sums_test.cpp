@@ -151,7 +151,7 @@ TEST(CellSums, TellsQuartersOfTheDriveApart) {
   RowSums sums({0.2, 0.4, 0.6, 0.8, 1.0, 1.2, 1.4});
   RunRows rows;
   for (const double error : {1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0})
-    rows.truth.insert(rows.truth.end(), {error, 0.0, 0.0});
+    rows.truth.insert(rows.truth.end(), {error, 0.0, error / 64.0});
   rows.spread.mean.assign(rows.truth.size(), 0.0);
   sums.add(rows);
   const CellAnalysis cell = sums.result();
@@ -160,6 +160,10 @@ TEST(CellSums, TellsQuartersOfTheDriveApart) {
   EXPECT_DOUBLE_EQ(cell.over_runs("position_error_quarter2").mean, 3.0);
   EXPECT_DOUBLE_EQ(cell.over_runs("position_error_quarter3").mean, 12.0);
   EXPECT_DOUBLE_EQ(cell.over_runs("position_error_quarter4").mean, 48.0);
+  EXPECT_DOUBLE_EQ(cell.over_runs("heading_error_quarter1").mean, 1.0 / 64.0);
+  EXPECT_DOUBLE_EQ(cell.over_runs("heading_error_quarter2").mean, 3.0 / 64.0);
+  EXPECT_DOUBLE_EQ(cell.over_runs("heading_error_quarter3").mean, 12.0 / 64.0);
+  EXPECT_DOUBLE_EQ(cell.over_runs("heading_error_quarter4").mean, 48.0 / 64.0);
 }
 
 TEST(CellSums, LetsTheMixtureLeadAndKeepsTheSpread) {
