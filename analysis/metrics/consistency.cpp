@@ -27,6 +27,8 @@ constexpr Score kNeesScores[] = {
      [](const MeasuredRun& run) { return mean_nees(run, ErrorBlock::pose); }, Better::neither},
     {"nees_position", "1", "mean NEES of the position",
      [](const MeasuredRun& run) { return mean_nees(run, ErrorBlock::position); }, Better::neither},
+    {"nees_heading", "1", "mean NEES of the heading",
+     [](const MeasuredRun& run) { return mean_nees(run, ErrorBlock::heading); }, Better::neither},
 };
 
 class NeesOverRuns final : public MergedSums<NeesOverRuns> {

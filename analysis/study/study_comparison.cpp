@@ -40,6 +40,7 @@ std::optional<ErrorBlock> judged_block(const Score& score) {
   const std::string_view name = score.name;
   if (name == "nees") return ErrorBlock::pose;
   if (name == "nees_position") return ErrorBlock::position;
+  if (name == "nees_heading") return ErrorBlock::heading;
   return std::nullopt;
 }
 
@@ -47,7 +48,15 @@ std::optional<ErrorBlock> judged_block(const Score& score) {
 std::string name_in_tables(const Score& score) {
   const auto block = judged_block(score);
   if (!block) return score.name;
-  return *block == ErrorBlock::pose ? "NEES ratio" : "position NEES ratio";
+  switch (*block) {
+    case ErrorBlock::pose:
+      return "NEES ratio";
+    case ErrorBlock::position:
+      return "position NEES ratio";
+    case ErrorBlock::heading:
+      return "heading NEES ratio";
+  }
+  return score.name;
 }
 
 double expectation_of(const Score& score, const CellAnalysis& cell) {

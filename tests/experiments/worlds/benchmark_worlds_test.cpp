@@ -19,8 +19,8 @@ constexpr const char* kFrozenFolder = "studies/benchmark/1";
 /// {name} SHA-256 of the resolved text of each study, which contains its world.
 const std::map<std::string, std::string>& frozen_studies() {
   static const std::map<std::string, std::string> frozen = {
-      {"circle_easy", "3085b7fe6c1867ec2c331431e1be61d075e266a48ec7105ce23603731ca7d8ac"},
-      {"circle_hard", "f3a08de39689f04005a89e06f1f685397b8e9a10e6693b4bcc9e9a003eeaabf4"},
+      {"circle_easy", "e54e9354b719fd31b78bd62fd9ab3035a42c918428fe86448f46ff6fee4b5777"},
+      {"circle_hard", "3648aaeadd48eb48adff1da6493428f9cb0159ff9d51ee7271baf48e0984784b"},
       {"corridor_easy", "e6b51a3fe32b918e0758ce445b169403b0e6ab0857e823f8a890fdcb1f96bf56"},
       {"corridor_hard", "a588e7cea35694139bb0cf16e44fff1f16b22e2393d3ab2343afef53e7194fa5"},
       {"dense_loop_easy", "5e190ed24f3ab6dde6ced5fbe779e94c9205239200e634905741ede639929a5d"},
