@@ -28,7 +28,7 @@ constexpr const char* kNote = "font-size=\"12\" fill=\"#444444\"";
 
 std::string short_ratio(double ratio) {
   if (std::isnan(ratio)) return "?";
-  return ratio < 100.0 ? readable(ratio) : ratio < 1e4 ? readable(ratio, 2) : compact(ratio);
+  return ratio < 100.0 ? readable(ratio) : ratio < 1e4 ? readable(ratio, 2) : "> 1e4";
 }
 
 std::string time_text(double seconds) {
