@@ -43,6 +43,7 @@ std::vector<FilterKind> all_kinds() {
       ampf_de_kind(),
       relative_ekf_slam_kind(),
       smoother_kind(),
+      fixed_lag_smoother_kind(),
       dead_reckoning_kind(),
   };
   for (FilterKind& kind : plain_kinds(kinds)) kinds.push_back(std::move(kind));

@@ -39,19 +39,48 @@ void add_rows(const Segment& segment, const Segment::Rows& own, Segment::Rows& a
 
 }  // namespace
 
-void Segment::linearise(const FactorGraph& graph, const GraphEstimate& estimate, std::size_t begin,
-                        std::size_t end, const BelievedSensor& sensor, SegmentScratch& scratch) {
+LinearMotion LinearMotion::of(const FactorGraph& graph, const GraphEstimate& estimate,
+                              const LinearisationPlaces& places, std::size_t t) {
+  const MotionIncrement& motion = graph.motion(t);
+  const Direction<double>& heading = estimate.directions[t];
+  const Pose& before = t == 0 ? estimate.start : estimate.poses[t - 1];
+  const Pose& after = estimate.poses[t];
+  const Eigen::Vector2d expected = to_vector(in_world(heading, motion.pose().x, motion.pose().y)) -
+                                   (place_of(after) - place_of(before));
+  const double turned_by = wrap(after.heading - before.heading);
+  return {.way = quarter_turn() * (place_of(places.pose(t)) - place_of(places.before(t))),
+          .offset = {expected.x(), expected.y(), wrap(motion.pose().heading - turned_by)},
+          .noise = symmetric(turned(motion.covariance(), heading))};
+}
+
+void LinearMotion::carry(Rows& given, Eigen::Matrix3d& covariance) const {
+  for (Eigen::Index i = 0; i < 2; ++i) given.col(i) += way(i) * given.col(2);
+  given.row(0) += offset.transpose();
+  Eigen::Matrix3d A = Eigen::Matrix3d::Identity();
+  A.topRightCorner<2, 1>() = way;
+  covariance = A * covariance * A.transpose() + noise;
+  mirror_lower(covariance);
+}
+
+void Segment::linearise(const FactorGraph& graph, const GraphEstimate& estimate,
+                        const LinearisationPlaces& places, std::size_t begin, std::size_t end,
+                        const BelievedSensor& sensor, SegmentScratch& scratch) {
   begin_ = begin;
   end_ = end;
   start(graph, scratch);
-  Pose before = begin == 0 ? graph.start() : estimate.poses[begin - 1];
   for (std::size_t t = begin; t < end; ++t) {
-    const Pose& pose = estimate.poses[t];
-    carry(graph.motion(t), before, pose, estimate.directions[t]);
+    motions_.push_back(LinearMotion::of(graph, estimate, places, t));
+    motions_.back().carry(given_, covariance_);
     for (const FactorGraph::Observation& observation : graph.observations_of(t)) {
-      condition(observation, pose, estimate.landmarks[observation.landmark], sensor, scratch);
+      const std::uint32_t l = observation.landmark;
+      auto at = sensor.linearised(places.pose(t), places.landmark(l));
+      if (at && places.differ()) {
+        const auto now = sensor.linearised(estimate.poses[t], estimate.landmarks[l]);
+        if (now) at->value = now->value;
+        if (!now) at.reset();
+      }
+      condition(observation, at, sensor, scratch);
     }
-    before = pose;
   }
   const auto used = scratch.panel.topLeftCorner(
       given_.rows(), 2 * static_cast<Eigen::Index>(observations_.size()));
@@ -84,32 +113,13 @@ void Segment::start(const FactorGraph& graph, SegmentScratch& scratch) {
   covariance_.setZero();
 }
 
-/// x <- A x + offset + noise (EQUATIONS (21.2)).
-void Segment::carry(const MotionIncrement& motion, const Pose& before, const Pose& after,
-                    const Direction<double>& heading) {
-  const Eigen::Vector2d moved = place_of(after) - place_of(before);
-  const Eigen::Vector2d expected =
-      to_vector(in_world(heading, motion.pose().x, motion.pose().y)) - moved;
-  const double turned_by = wrap(after.heading - before.heading);
-  const LinearMotion linear{
-      .way = quarter_turn() * moved,
-      .offset = {expected.x(), expected.y(), wrap(motion.pose().heading - turned_by)}};
-  for (Eigen::Index i = 0; i < 2; ++i) given_.col(i) += linear.way(i) * given_.col(2);
-  given_.row(0) += linear.offset.transpose();
-  Eigen::Matrix3d A = Eigen::Matrix3d::Identity();
-  A.topRightCorner<2, 1>() = linear.way;
-  covariance_ = A * covariance_ * A.transpose() + symmetric(turned(motion.covariance(), heading));
-  mirror_lower(covariance_);
-  motions_.push_back(linear);
-}
-
 /// An observation of a landmark too near for a derivative is left out of this linearisation.
-void Segment::condition(const FactorGraph::Observation& observation, const Pose& pose,
-                        const Point& landmark, const BelievedSensor& sensor,
+void Segment::condition(const FactorGraph::Observation& observation,
+                        const std::optional<LinearisedDetection>& at, const BelievedSensor& sensor,
                         SegmentScratch& scratch) {
   LinearObservation seen{Matrix23::Zero(), Eigen::Matrix2d::Zero(), Eigen::Vector2d::Zero(),
                          Matrix32::Zero(), Eigen::Vector2d::Zero()};
-  if (const auto at = sensor.linearised(pose, landmark)) {
+  if (at) {
     const Matrix23& H = at->by_pose;
     Eigen::Matrix2d S = H * covariance_ * H.transpose();
     S.diagonal() += sensor.variances();
@@ -192,7 +202,7 @@ void Segment::smooth_poses(const FactorGraph& graph, const GraphEstimate& estima
 
 std::span<Elimination::Link> Elimination::links() { return std::span(links_).first(n_links_); }
 
-void Elimination::begin(const FactorGraph& graph) {
+void Elimination::begin(const FactorGraph& graph, const GraphEstimate& estimate) {
   n_links_ = (graph.poses() + kSegment - 1) / kSegment;
   if (links_.size() < n_links_) links_.resize(n_links_);
   height_ = packed(graph.landmarks() + 1);
@@ -206,14 +216,54 @@ void Elimination::begin(const FactorGraph& graph) {
   rows_ = 0;
   covariance_.setZero();
   filled_ = 0;
+  if (graph.has_prior()) begin_at(graph.prior(), estimate);
+  start_ = given_;
+}
+
+/// Begins with the prior, in terms of ways from the estimate instead of its own.
+void Elimination::begin_at(const GraphPrior& prior, const GraphEstimate& estimate) {
+  const Eigen::Index n = prior.given.rows();
+  const Eigen::VectorXd way = prior.way_to(estimate.landmarks);
+  given_.topRows(n) = prior.given;
+  given_.row(0) +=
+      way.transpose() * prior.given - boxminus(estimate.start, prior.start).transpose();
+  covariance_ = prior.covariance;
+  auto information = information_.topLeftCorner(n, n);
+  information.triangularView<Eigen::Lower>() = prior.information;
+  const Eigen::VectorXd gradient = prior.information.selfadjointView<Eigen::Lower>() * way;
+  information.col(0) += gradient;
+  information(0, 0) += gradient(0) + way.dot(gradient);
+  rows_ = packed(prior.landmarks.size() + 1);
+}
+
+void Elimination::marginalise_first_pose(const FactorGraph& graph, const GraphEstimate& estimate,
+                                         GraphPrior& prior) {
+  begin(graph, estimate);
+  const LinearisationPlaces places(jacobians_, graph, estimate);
+  links_[0].segment.linearise(graph, estimate, places, 0, 1, sensor_, scratch_);
+  join(links_[0]);
+  flush();
+  LinearMotion::of(graph, estimate, places, 1).carry(given_, covariance_);
+  std::size_t n_landmarks = graph.prior().landmarks.size();
+  while (n_landmarks < graph.landmarks() && graph.first_pose_of(n_landmarks) == 0) ++n_landmarks;
+  prior.first = graph.prior().first;
+  const auto seen = std::span(estimate.landmarks).first(n_landmarks);
+  prior.landmarks.assign(seen.begin(), seen.end());
+  for (const Point& added : seen.subspan(prior.first.size())) prior.first.push_back(added);
+  const Eigen::Index n = row_in_form(n_landmarks);
+  prior.start = estimate.poses[1];
+  prior.given = given_.topRows(n);
+  prior.covariance = covariance_;
+  prior.information = information_.topLeftCorner(n, n);
 }
 
 bool Elimination::linearise(const FactorGraph& graph, const GraphEstimate& estimate) {
-  begin(graph);
+  begin(graph, estimate);
+  const LinearisationPlaces places(jacobians_, graph, estimate);
   std::size_t first = 0;
   for (Link& link : links()) {
     const std::size_t end = std::min(first + kSegment, graph.poses());
-    link.segment.linearise(graph, estimate, first, end, sensor_, scratch_);
+    link.segment.linearise(graph, estimate, places, first, end, sensor_, scratch_);
     join(link);
     first = end;
   }
@@ -290,10 +340,15 @@ void Elimination::minimise(const FactorGraph& graph, const GraphEstimate& estima
   step_ = -information_.col(0).segment(kConstantRows, n);
   if (n > 0) factor_.solve_in_place(step_);
   filter_links();
-  smooth_links();
+  minimum.start_multiplier = smooth_links();
+  minimum.start_step = links_[0].smoothed;
   minimum.multipliers.resize(graph.poses());
   minimum.displacements.resize(graph.poses());
-  minimum.squares = 0.0;
+  minimum.in_map.clear();
+  for (std::size_t l = 0; l < graph.prior().landmarks.size(); ++l) {
+    minimum.in_map.push_back(estimate.landmarks[l] + Point{step_(row_of(l)), step_(row_of(l) + 1)});
+  }
+  minimum.squares = graph.prior().squares(minimum.start_multiplier, minimum.in_map);
   for (Link& link : links()) {
     minimum.squares +=
         link.segment.minimise(graph, estimate, step_, link.smoothed, link.adjoint, minimum);
@@ -318,7 +373,8 @@ Eigen::Vector3d Elimination::gradient(const Segment& segment, const Eigen::Vecto
 }
 
 void Elimination::filter_links() {
-  Eigen::Vector3d x = Eigen::Vector3d::Zero();
+  Eigen::Vector3d x = start_.row(0).transpose() +
+                      start_.middleRows(kConstantRows, step_.size()).transpose() * step_;
   for (Link& link : links()) {
     const Segment& segment = link.segment;
     link.filtered = x - link.covariance * gradient(segment, x);
@@ -327,7 +383,8 @@ void Elimination::filter_links() {
   }
 }
 
-void Elimination::smooth_links() {
+/// Returns the multiplier of the start.
+Eigen::Vector3d Elimination::smooth_links() {
   Eigen::Vector3d adjoint = Eigen::Vector3d::Zero();
   for (std::size_t i = n_links_; i-- > 0;) {
     Link& link = links_[i];
@@ -336,14 +393,16 @@ void Elimination::smooth_links() {
     link.smoothed = link.filtered + link.covariance * adjoint;
     adjoint -= gradient(link.segment, link.smoothed);
   }
+  return adjoint;
 }
 
 /// Computes the steps of the landmarks in the frames of their first poses, which move as well.
 void Elimination::place_landmarks(const FactorGraph& graph, const GraphEstimate& estimate,
                                   GraphMinimum& minimum) {
   minimum.in_frame.resize(graph.landmarks());
-  Eigen::Vector3d x = Eigen::Vector3d::Zero();
-  std::size_t l = 0;
+  std::ranges::copy(minimum.in_map, minimum.in_frame.begin());
+  Eigen::Vector3d x = minimum.start_step;
+  std::size_t l = minimum.in_map.size();
   for (std::size_t t = 0; t < graph.poses(); ++t) {
     const Pose& mean = graph.motion(t).pose();
     const Pose& now = minimum.displacements[t];

@@ -15,11 +15,45 @@
 
 namespace montecarta::filters {
 
+/// The point at which derivatives by the states of a prior are taken: the estimate, or the estimate
+/// when the prior first contained the state (EQUATIONS 25).
+enum class Jacobians { latest, first };
+
+/// The points at which the measurements of a graph are linearised.
+class LinearisationPlaces {
+ public:
+  LinearisationPlaces(Jacobians jacobians, const FactorGraph& graph, const GraphEstimate& estimate)
+      : first_(jacobians == Jacobians::first && graph.has_prior() ? &graph.prior() : nullptr),
+        estimate_(estimate) {}
+
+  /// Returns whether they may differ from the estimate.
+  bool differ() const { return first_ != nullptr; }
+  /// With a prior, the first pose is its start.
+  const Pose& pose(std::size_t t) const {
+    return differ() && t == 0 ? first_->start : estimate_.poses[t];
+  }
+  /// The pose before pose `t`.
+  const Pose& before(std::size_t t) const {
+    if (t > 0) return pose(t - 1);
+    return differ() ? first_->start : estimate_.start;
+  }
+  const Point& landmark(std::size_t l) const {
+    return differ() && l < first_->first.size() ? first_->first[l] : estimate_.landmarks[l];
+  }
+
+ private:
+  const GraphPrior* first_;  ///< null if all are the estimate
+  const GraphEstimate& estimate_;
+};
+
 /// The minimum of the linearised sum of squares of a graph, in the coordinates of a GraphEstimate.
 struct GraphMinimum {
+  Eigen::Vector3d start_step;  ///< way from the estimate of the start to the minimum
+  Eigen::Vector3d start_multiplier;
   std::vector<Pose> displacements;           ///< {pose} displacements at the minimum
   std::vector<Eigen::Vector3d> multipliers;  ///< {pose} multipliers at the minimum
   std::vector<Point> in_frame;               ///< {landmark} [m] positions at the minimum
+  std::vector<Point> in_map;                 ///< {landmark} [m] those of a prior, in the map
   double squares = 0.0;                      ///< value of the linearised sum
 };
 
@@ -31,20 +65,37 @@ struct SegmentScratch {
   Eigen::MatrixXd information;  ///< quadratic form of (1, pose before, landmarks)
 };
 
+/// A motion in the map frame: x = x_before + way e_heading of x_before + offset + noise (EQUATIONS
+/// (21.2)).
+struct LinearMotion {
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, 3>;
+
+  Eigen::Vector2d way;     ///< [m/rad] derivative of the position by the heading before
+  Eigen::Vector3d offset;  ///< mean minus estimate
+  Eigen::Matrix3d noise;   ///< covariance that it adds
+
+  /// The motion to pose `t`.
+  static LinearMotion of(const FactorGraph& graph, const GraphEstimate& estimate,
+                         const LinearisationPlaces& places, std::size_t t);
+  /// Moves the form {row, 3} and the covariance of a pose, given others, with it.
+  void carry(Rows& given, Eigen::Matrix3d& covariance) const;
+};
+
 /// Some consecutive poses, linearised and eliminated one after the other (EQUATIONS 21). A pose has
 /// the form x = g + G (x_before, l) + N(0, C), given the pose before the segment and the landmarks
 /// l that it observes. A motion adds to C, and an observation adds two rows to the information of
 /// x_before and l. So a motion may be certain in some or all directions, and a pose known exactly.
 class Segment {
  public:
-  using Rows = Eigen::Matrix<double, Eigen::Dynamic, 3>;
+  using Rows = LinearMotion::Rows;
   static constexpr Eigen::Index kPoseRow = 1;      ///< row of x_before; row 0: the constant
   static constexpr Eigen::Index kLandmarkRow = 8;  ///< row of the first landmark
 
   /// Linearises the poses from `begin` to before `end`. Afterwards scratch.information is that of
   /// this segment, in its lower triangle.
-  void linearise(const FactorGraph& graph, const GraphEstimate& estimate, std::size_t begin,
-                 std::size_t end, const BelievedSensor& sensor, SegmentScratch& scratch);
+  void linearise(const FactorGraph& graph, const GraphEstimate& estimate,
+                 const LinearisationPlaces& places, std::size_t begin, std::size_t end,
+                 const BelievedSensor& sensor, SegmentScratch& scratch);
   std::size_t last_pose() const { return end_ - 1; }
   /// The landmarks that it observes, in the order of their rows.
   std::span<const std::uint32_t> landmarks() const { return landmarks_; }
@@ -65,11 +116,6 @@ class Segment {
   void advance(std::size_t pose, const Eigen::Vector3d& noise, Eigen::Vector3d& x) const;
 
  private:
-  /// A motion in the map frame: x = x_before + way e_heading of x_before + offset + noise.
-  struct LinearMotion {
-    Eigen::Vector2d way;     ///< [m/rad] derivative of the position by the heading before
-    Eigen::Vector3d offset;  ///< mean minus estimate
-  };
   /// An observation in units of the standard deviations of its innovation, given the landmarks.
   struct LinearObservation {
     Matrix23 pose;
@@ -80,10 +126,9 @@ class Segment {
   };
 
   void start(const FactorGraph& graph, SegmentScratch& scratch);
-  void carry(const MotionIncrement& motion, const Pose& before, const Pose& after,
-             const Direction<double>& heading);
-  void condition(const FactorGraph::Observation& observation, const Pose& pose,
-                 const Point& landmark, const BelievedSensor& sensor, SegmentScratch& scratch);
+  void condition(const FactorGraph::Observation& observation,
+                 const std::optional<LinearisedDetection>& at, const BelievedSensor& sensor,
+                 SegmentScratch& scratch);
   void add_rows(const LinearObservation& seen, Eigen::Index row, SegmentScratch& scratch);
   double filter_poses(const FactorGraph& graph, const Eigen::VectorXd& landmark_steps,
                       Eigen::Vector3d x);
@@ -102,15 +147,21 @@ class Segment {
 
 /// One linearisation of a factor graph (EQUATIONS 21). Poses are eliminated in segments, each of
 /// which involves few landmarks, then the poses between segments, given all landmarks. The newest
-/// pose is last and remains together with the landmarks.
+/// pose is last and remains together with the landmarks. The graph may begin with a prior.
 class Elimination {
  public:
-  explicit Elimination(const BelievedSensor& sensor) : sensor_(sensor) {}
+  explicit Elimination(const BelievedSensor& sensor, Jacobians jacobians = Jacobians::latest)
+      : sensor_(sensor), jacobians_(jacobians) {}
 
   /// Linearises at `estimate`; returns false if landmarks are not determined.
   [[nodiscard]] bool linearise(const FactorGraph& graph, const GraphEstimate& estimate);
   /// Computes the minimum of the last linearisation, which was at `estimate`.
   void minimise(const FactorGraph& graph, const GraphEstimate& estimate, GraphMinimum& minimum);
+  /// Marginalises the first pose, linearised at `estimate` with its motion, its observations and
+  /// the motion to the second pose: `prior` becomes the prior for a graph without it (EQUATIONS
+  /// 25). The last linearisation is lost.
+  void marginalise_first_pose(const FactorGraph& graph, const GraphEstimate& estimate,
+                              GraphPrior& prior);
   /// Computes the covariance of the newest pose and the map in the map frame; writes no means.
   void covariance(Eigen::Matrix3d& pose, MapMoments& map) const;
   /// Number of rows of the landmarks in that covariance.
@@ -133,23 +184,26 @@ class Elimination {
   };
 
   std::span<Link> links();
-  void begin(const FactorGraph& graph);
+  void begin(const FactorGraph& graph, const GraphEstimate& estimate);
+  void begin_at(const GraphPrior& prior, const GraphEstimate& estimate);
   void join(Link& link);
   void add_information(const Link& link);
   void flush();
   Eigen::Vector3d at_minimum(const Segment& segment, const Segment::Rows& rows) const;
   Eigen::Vector3d gradient(const Segment& segment, const Eigen::Vector3d& x) const;
   void filter_links();
-  void smooth_links();
+  Eigen::Vector3d smooth_links();
   void place_landmarks(const FactorGraph& graph, const GraphEstimate& estimate,
                        GraphMinimum& minimum);
 
   BelievedSensor sensor_;
+  Jacobians jacobians_;
   std::vector<Link> links_;  ///< links of this linearisation, then unused ones
   std::size_t n_links_ = 0;  ///< number of links of this linearisation
   SegmentScratch scratch_;
   Eigen::Index rows_ = 0;         ///< number of rows of the landmarks so far, in packs
   Eigen::Index height_ = 0;       ///< number of rows of all landmarks, in packs
+  Segment::Rows start_;           ///< form of the start, with rows like given_
   Segment::Rows given_;           ///< form of the last pose so far: row 0 is g, from row 2 on G'
   Eigen::Matrix3d covariance_;    ///< C: covariance of the last pose so far
   Segment::Rows gradient_;        ///< half the gradient by the last pose, with rows like given_

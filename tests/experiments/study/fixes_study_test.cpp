@@ -41,7 +41,8 @@ TEST(Fixes, AreNoPartOfTheTextOfAStudyWithoutThem) {
 }
 
 TEST(Fixes, AreRefusedWithAFilterThatTakesNone) {
-  for (const char* cell : {"smoother", "ampf_de", "fej_ekf_slam", "dead_reckoning"}) {
+  for (const char* cell :
+       {"smoother", "fixed_lag_smoother", "ampf_de", "fej_ekf_slam", "dead_reckoning"}) {
     EXPECT_THAT(complaint(kWithFixes, {"cells.cell=" + std::string(cell)}),
                 AllOf(HasSubstr(std::string(cell) + " with scenario.fixes = position"),
                       HasSubstr("use one of ekf_slam, riekf_slam, ukf_slam, fastslam1")));

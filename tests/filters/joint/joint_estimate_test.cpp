@@ -53,8 +53,9 @@ int expect_parts(SlamFilter& filter, const SmallWorld& world) {
 
 TEST(JointEstimate, OfOneGaussianHasItsParts) {
   const SmallWorld world = small_world({.seed = 31, .scans = 60});
-  for (const FilterKind& kind : {ekf_slam_kind(), riekf_slam_kind(), robocentric_ekf_slam_kind(),
-                                 smoother_kind(), relative_ekf_slam_kind()}) {
+  for (const FilterKind& kind :
+       {ekf_slam_kind(), riekf_slam_kind(), robocentric_ekf_slam_kind(), smoother_kind(),
+        fixed_lag_smoother_kind(), relative_ekf_slam_kind()}) {
     for (const auto association : {Association::known, Association::nearest}) {
       for (const char* moments : {"map", "pushed"}) {
         const bool is_one = kind.name == "ekf_slam" || kind.name == "riekf_slam";

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A robot whose heading is known, with a sensor that measures positions, is a linear model.
 #include "filters/joint/joint_filter.hpp"
+#include "filters/smoothing/smoother.hpp"
 #include "tests/filters/small_world.hpp"
 
 #include <Eigen/Dense>
@@ -119,6 +120,26 @@ TEST_P(OnALinearModel, EkfEqualsKalman) {
   const auto filter = make_filter(kind, settings, {{"iterations", iterations}});
   expect_kalman(*filter, KalmanFilter(), small_world(settings), settings.noise);
 }
+
+/// How many poses a smoother keeps makes no difference where nothing is to be linearised again.
+class FixedLagOnALinearModel : public testing::TestWithParam<std::pair<const char*, const char*>> {
+};
+
+TEST_P(FixedLagOnALinearModel, EqualsKalman) {
+  const auto& [lag, jacobians] = GetParam();
+  const SmallWorldSettings settings{.scans = 30, .noise = linear_belief(), .controls = {kStraight}};
+  const auto filter =
+      make_filter(fixed_lag_smoother_kind(), settings, {{"lag", lag}, {"jacobians", jacobians}});
+  expect_kalman(*filter, KalmanFilter(), small_world(settings), settings.noise);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, FixedLagOnALinearModel,
+                         testing::Values(std::pair("1", "latest"), std::pair("4", "latest"),
+                                         std::pair("100", "latest"), std::pair("1", "first"),
+                                         std::pair("4", "first")),
+                         [](const auto& instance) {
+                           return std::string(instance.param.second) + instance.param.first;
+                         });
 
 /// The same for filters that can be given a map.
 class InALinearKnownMap : public testing::TestWithParam<IteratedKind> {};

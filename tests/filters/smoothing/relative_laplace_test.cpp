@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/smoothing/relative_laplace.hpp"
 
-#include "filters/smoothing/smoother.hpp"
+#include "filters/smoothing/gauss_newton.hpp"
 #include "tests/filters/reference/dense_smoother.hpp"
 #include "tests/filters/small_world.hpp"
 #include "tests/filters/smoothing/small_graph.hpp"

@@ -2,6 +2,7 @@
 #include "filters/smoothing/smoother.hpp"
 
 #include "filters/joint/joint_filter.hpp"
+#include "filters/smoothing/gauss_newton.hpp"
 #include "tests/filters/reference/dense_smoother.hpp"
 #include "tests/filters/same_runs.hpp"
 #include "tests/filters/small_world.hpp"
