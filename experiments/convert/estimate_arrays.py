@@ -7,6 +7,7 @@ import os
 
 import conversion
 from conversion import ConversionError, np
+from covariance_columns import in_order
 from estimate_layouts import POSE_COLUMNS, Run
 from estimate_table import seconds
 
@@ -109,7 +110,10 @@ def runs_in(path, options):
             raise ConversionError(f"{path}: no 'covariance' (without it nothing can be judged): "
                                   "save it as {run, scan, d, d}")
         check_shape(arrays, "covariance", covariance.shape, (runs, scans, d, d))
-        return [(k, run_of(k, values[k], covariance[k])) for k in range(runs)]
+        if options.order and d == width:
+            raise ConversionError(f"{path}: --order {options.order} (the state is no pose in "
+                                  f"space, but {','.join(names)}): leave it out")
+        return [(k, run_of(k, values[k], in_order(covariance[k], options))) for k in range(runs)]
     truth = np.zeros((scans, width)) if mean is None else arrays.get("truth", (2, 3))
     if truth is None:
         raise ConversionError(f"{path}: no 'truth' (that of 'mean' is needed): save it as {{run, "

@@ -5,17 +5,15 @@ fail. What stays ambiguous is refused, with the option that decides it.
 """
 import dataclasses
 import os
-import re
 
-import conversion
 from conversion import ConversionError, np
+from covariance_columns import (ALL_ZERO, ZERO_BETWEEN, covariances_named, family_in, from_triangle,
+                                in_asked_order, in_order, is_deviation, refuse_order,
+                                refuse_unknown, whole_covariances)
 from estimate_table import CNSPY_ERRORS, POSE, SAME_TIME, SECONDS_IN, Table, pose_name, seconds
 
 POSE_COLUMNS = ("x_m", "y_m", "z_m", "qx", "qy", "qz", "qw")
-COMPONENTS = ("x", "y", "z", "rx", "ry", "rz")
-ROTATION_FIRST = [3, 4, 5, 0, 1, 2]  # where x, y, z, rx, ry, rz are in such a covariance
-QUATERNION_SLACK = 2e-3    # tolerance of its length, if printed with three digits
-SEMIDEFINITE_SLACK = 1e-5  # of eigenvalues of correlations, if printed with six digits
+QUATERNION_SLACK = 2e-3  # tolerance of its length, if printed with three digits
 
 
 @dataclasses.dataclass
@@ -29,54 +27,7 @@ class Run:
     states: np.ndarray       # {row, column}
     covariances: np.ndarray  # {row, d, d}
     notes: list              # what the user should know of the conversion
-
-
-def is_semidefinite(P):
-    """Which of the covariances {row, d, d} are positive semidefinite, up to their digits."""
-    variances = np.einsum("kii->ki", P)
-    scale = np.sqrt(np.where(variances > 0, variances, 1.0))
-    correlations = P / scale[:, :, None] / scale[:, None, :]
-    unknown = (variances == 0)[:, :, None] & (np.abs(P) > 0)
-    return (np.linalg.eigvalsh(correlations)[:, 0] > -SEMIDEFINITE_SLACK) & ~unknown.any((1, 2))
-
-
-def from_triangle(values, triangle):
-    """The symmetric matrices {row, 6, 6} of 21 numbers row by row, of the upper or lower one."""
-    P = np.zeros((len(values), 6, 6))
-    rows, columns = np.triu_indices(6) if triangle == "upper" else np.tril_indices(6)
-    P[:, rows, columns] = values
-    P[:, columns, rows] = values
-    return P
-
-
-def whole_covariances(values, options, path, declared=""):
-    """Covariances {row, 6, 6} of 36 or 21 numbers per row, and how the 21 were taken."""
-    if values.shape[1] == 36:
-        return values.reshape(-1, 6, 6), "36 numbers are the covariance row by row"
-    triangle = declared or options.triangle
-    if not triangle:
-        fits = [one for one in ("upper", "lower")
-                if np.all(is_semidefinite(from_triangle(values, one)))]
-        if len(fits) != 1:
-            raise ConversionError(f"{path}: 21 numbers of a covariance ({len(fits)} of 2 triangles "
-                                  "give a covariance in every row): say --triangle upper or "
-                                  "--triangle lower")
-        triangle = fits[0]
-        return (from_triangle(values, triangle),
-                f"21 numbers are the {triangle} triangle, since the other gives no covariance")
-    return from_triangle(values, triangle), f"21 numbers are the {triangle} triangle"
-
-
-def in_order(P, options, declared=""):
-    """The covariances with position first. `declared` is the order that the file names."""
-    if (declared or options.order) == "rotation-first" and P is not None:
-        return P[:, ROTATION_FIRST][:, :, ROTATION_FIRST]
-    return P
-
-
-def refuse_order(place, options):
-    raise ConversionError(f"{place}: --order {options.order} (the file names the order of its "
-                          "covariance): leave it out")
+    assumed: list = dataclasses.field(default_factory=list)  # what no check can tell, was guessed
 
 
 def rotations(quaternions):
@@ -113,98 +64,6 @@ def poses_of(table, columns, options):
     return poses, [f"quaternion {options.quaternion} by --quaternion"] if options.quaternion else []
 
 
-# ---- covariances under a header: the element (row, column) that each name stands for
-
-def open_vins_element(name):
-    found = re.fullmatch(r"p([rt])([1-3])([1-3])", name)
-    first = 3 if found and found[1] == "r" else 0
-    return found and (first + int(found[2]) - 1, first + int(found[3]) - 1)
-
-
-def cnspy_element(name):
-    found = re.fullmatch(r"p([xyz])([xyz])", name)
-    if found:
-        return "xyz".index(found[1]), "xyz".index(found[2])
-    found = re.fullmatch(r"q([rpy])([rpy])", name)
-    if found:
-        return 3 + "rpy".index(found[1]), 3 + "rpy".index(found[2])
-    found = re.fullmatch(r"t([xyzabc])([xyzabc])", name)
-    return found and ("xyzabc".index(found[1]), "xyzabc".index(found[2]))
-
-
-def ros_element(name):
-    found = re.fullmatch(r"(?:.*[./])?pose\.covariance[.\[_]?(\d+)\]?", name)
-    return found and int(found[1]) < 36 and divmod(int(found[1]), 6)
-
-
-def montecarta_element(name):
-    found = re.fullmatch(r"cov_([a-z]+|[0-5])_([a-z]+|[0-5])", name)
-    keys = [*COMPONENTS, *map(str, range(6))]
-    return found and found[1] in keys and found[2] in keys and tuple(
-        keys.index(found[k]) % 6 for k in (1, 2))
-
-
-@dataclasses.dataclass
-class Family:
-    """Names that a covariance has in headers. `has_blocks`: position and rotation may come without
-    covariance between them. `orders`: the names say which elements are of the position."""
-    name: str
-    element: callable
-    has_blocks: bool
-    orders: bool
-
-
-FAMILIES = (Family("OpenVINS", open_vins_element, True, True),
-            Family("cnspy", cnspy_element, True, True),
-            Family("ROS", ros_element, False, False),
-            Family("montecarta", montecarta_element, False, False))
-
-
-def family_in(table):
-    """The family that names elements of a covariance, with {element: column}; None without one."""
-    found = []
-    for family in FAMILIES:
-        elements = {}
-        for k, name in enumerate(table.names):
-            element = family.element(name)
-            if element and element in elements:
-                raise ConversionError(f"{table.header_place}: '{table.written[k]}' and "
-                                      f"'{table.written[elements[element]]}' are the same element "
-                                      "of the covariance (one is needed): leave out the other")
-            if element:
-                elements[element] = k
-        if elements:
-            found.append((family, elements))
-    if len(found) > 1:
-        raise ConversionError(f"{table.header_place}: covariances as in {found[0][0].name} and in "
-                              f"{found[1][0].name} (one is needed): leave out the columns of the "
-                              "other")
-    return found[0] if found else (None, {})
-
-
-def covariances_named(table, family, elements):
-    """Covariances {row, 6, 6} of the elements in the header, and whether it has only blocks."""
-    blocks = [(i, j) for i in range(6) for j in range(i, 6) if i // 3 == j // 3]
-    whole = [(i, j) for i in range(6) for j in range(i, 6)]
-    is_blocks = family.has_blocks and all(i // 3 == j // 3 for i, j in elements)
-    for i, j in blocks if is_blocks else whole:
-        if (i, j) not in elements and (j, i) not in elements:
-            raise ConversionError(f"{table.header_place}: no column of the covariance of "
-                                  f"{COMPONENTS[i]} and {COMPONENTS[j]} (the header has "
-                                  f"{len(elements)} as {family.name} names them): add it")
-    values = table.numbers(list(elements.values()))
-    P = np.zeros((len(values), 6, 6))
-    for k, (i, j) in enumerate(elements):
-        P[:, i, j] = values[:, k]
-        if (j, i) not in elements:
-            P[:, j, i] = values[:, k]
-    return P, is_blocks
-
-
-ZERO_BETWEEN = ("no covariance between position and rotation in the file: it is taken as 0, so "
-                "that the NEES varies more")
-
-
 def cnspy_convention(table, poses, P, notes):
     """The covariances of cnspy under the kind of error that the file declares, if it does."""
     declared = dict(table.declared)
@@ -236,32 +95,42 @@ def read_under_header(table, options):
     times, notes = seconds(*time_words(table), options.time)
     poses, said = poses_of(table, columns, options)
     notes += said
-    family, elements = family_in(table)
-    first_of_quaternion = table.written[min(columns[3:])]
-    layout = family.name if family else "EuRoC" if columns[6] < columns[3] else "TUM"
-    why = f"the header names {table.written[columns[0]]}, {first_of_quaternion} first"
-    P = None
-    if family and options.kind == "estimate":
+    family, elements = (family_in(table, options) if options.kind == "estimate" else (None, {}))
+    layout = (family.name if family and family.is_layout else
+              "EuRoC" if columns[6] < columns[3] else "TUM")
+    why = (f"the header names {table.written[columns[0]]}, "
+           f"{table.written[min(columns[3:])]} first")
+    P, assumed = None, []
+    if family:
         why += f", and {table.written[min(elements.values())]}"
-        P, is_blocks = covariances_named(table, family, elements)
-        if options.order and family.orders:
-            refuse_order(table.header_place, options)
-        if options.order:
-            P = in_order(P, options)
-            notes.append(order_note(options))
-        if family.name == "OpenVINS":
-            P = turned_into_map(poses, P)
-            notes.append("the rotation's covariance is turned into the map: judge it by --error "
-                         "world")
-        if family.name == "cnspy":
-            P = cnspy_convention(table, poses, P, notes)
-        if family.name == "ROS":
-            notes.append("the message defines the covariance in the frame of the map (--error "
-                         "world), but not every program keeps to it")
-        if is_blocks:
-            notes.append(ZERO_BETWEEN)
+        P, said = named_covariances(table, family, elements, poses, options)
+        notes += said
+        if any(one in table.names[k] for k in elements.values() for one in ("roll", "yaw")):
+            assumed.append("roll, pitch and yaw in the covariance are rotations about x, y and z "
+                           "(rx, ry, rz), which they are of small angles alone")
     return Run(table.path, f"{layout}, since {why}", POSE_COLUMNS, table.places, times, poses, P,
-               notes)
+               notes, assumed)
+
+
+def named_covariances(table, family, elements, poses, options):
+    """Covariances under a header with position first, and notes."""
+    if options.order and family.named:
+        refuse_order(table.header_place, options)
+    P, notes = covariances_named(table, family, elements)
+    is_own = table.names[0] == "time_s" and "x_m" in table.names  # as JUDGING_ESTIMATES has it
+    if options.order or not (family.orders or is_own):
+        columns = "the covariance of columns named by indices"
+        P, said = in_asked_order(P, options, (table.places or [table.path])[0], columns)
+        notes += said
+    if family.name == "OpenVINS":
+        P = turned_into_map(poses, P)
+        notes.append("the rotation's covariance is turned into the map: judge it by --error world")
+    if family.name == "cnspy":
+        P = cnspy_convention(table, poses, P, notes)
+    if family.name == "ROS":
+        notes.append("the message defines the covariance in the frame of the map (--error world), "
+                     "but not every program keeps to it")
+    return P, notes
 
 
 def time_words(table):
@@ -301,8 +170,8 @@ def read_without_header(table, options):
     times, notes = seconds([row[0] for row in table.rows], table.places or [table.path], "",
                            options.time)
     is_clock = bool(table.rows and notes)
-    if is_clock and width == 8 and not options.quaternion:
-        raise ConversionError(f"{table.places[0]}: 8 numbers without a header, times not in s (as "
+    if is_clock and width != 17 and not options.quaternion:
+        raise ConversionError(f"{table.places[0]}: no header, and times not in s (as "
                               "in EuRoC, where some programs write q_w first and others last): "
                               "say --quaternion wxyz or --quaternion xyzw")
     if width == 17 and not is_clock:
@@ -311,8 +180,11 @@ def read_without_header(table, options):
     is_euroc = width == 17 and not options.quaternion
     columns = [1, 2, 3, 5, 6, 7, 4] if is_euroc else [1, 2, 3, 4, 5, 6, 7]
     poses, said = poses_of(table, columns, options)
-    notes += said or [f"no header: the quaternion is taken as {'wxyz' if is_euroc else 'xyzw'}, "
-                      "which no check can tell (--quaternion)"] * bool(table.rows)
+    notes += said
+    taken, other = ("wxyz", "xyzw") if is_euroc else ("xyzw", "wxyz")
+    assumed = [] if said or not table.rows else [
+        f"no header: the quaternion is in the order {taken}, as in "
+        f"{'EuRoC' if is_euroc else 'TUM'}; if it is not, say --quaternion {other}"]
     layout = f"{'EuRoC' if is_clock else 'TUM'}, since {width} numbers begin with a time and a pose"
     P = None
     if options.kind == "estimate" and width in (20, 29, 44):
@@ -321,15 +193,11 @@ def read_without_header(table, options):
             layout, P = blocks_without_header(table, values, poses, options, notes)
         else:
             P, how = whole_covariances(values, options, table.places[0])
-            P = in_order(P, options)
+            P, said = in_asked_order(P, options, table.places[0],
+                                     "a covariance without a header")
+            notes += said
             layout = f"wide TUM, since {width} numbers begin with a time and a pose; {how}"
-            notes.append(order_note(options))
-    return Run(table.path, layout, POSE_COLUMNS, table.places, times, poses, P, notes)
-
-
-def order_note(options):
-    return (f"{options.order} by --order" if options.order else
-            "the covariance is taken with position first (--order)")
+    return Run(table.path, layout, POSE_COLUMNS, table.places, times, poses, P, notes, assumed)
 
 
 def blocks_without_header(table, values, poses, options, notes):
@@ -399,6 +267,8 @@ def read_square(table, options):
 
 def read_sigmas(table, options):
     """A state of any kind with a column sigma_NAME for each component."""
+    if options.order:
+        refuse_order(table.header_place, options)
     times, notes = seconds(*time_words(table), options.time)
     columns = [table.column(name) for name in POSE]
     if None not in columns:
@@ -407,7 +277,7 @@ def read_sigmas(table, options):
         notes += said
     else:
         taken = [k for k, name in enumerate(table.names)
-                 if pose_name(name) != "time" and not name.startswith("sigma_")]
+                 if pose_name(name) != "time" and not is_deviation(name)]
         states, columns = table.numbers(taken), tuple(table.written[k] for k in taken)
         names = [column.lower() for column in columns]
     sigma = [next((k for k, own in enumerate(table.names)
@@ -418,7 +288,7 @@ def read_sigmas(table, options):
         raise ConversionError(f"{table.header_place}: no column sigma_{name} (every component has "
                               "a standard deviation, in the unit of its column): add it")
     unused = [own for k, own in enumerate(table.names)
-              if own.startswith("sigma_") and k not in sigma]
+              if is_deviation(own) and k not in sigma]
     if unused:
         raise ConversionError(f"{table.header_place}: {unused[0]} belongs to no column (the state "
                               f"is {','.join(columns)}): name it like its column")
@@ -429,8 +299,7 @@ def read_sigmas(table, options):
                               "that is known exactly): correct it")
     P = np.zeros((*deviations.shape, deviations.shape[1]))
     np.einsum("kii->ki", P)[:] = deviations**2
-    notes.append("no covariances between components in the file: they count as 0, so that the NEES "
-                 "varies more")
+    notes.append(ALL_ZERO)
     return Run(table.path, f"standard deviations, since the header names {table.written[sigma[0]]}",
                columns, table.places, times, states, P, notes)
 
@@ -454,7 +323,7 @@ def refuse_judged(table, options):
 
 
 def has_sigmas(table, options):
-    return options.kind == "estimate" and any(name.startswith("sigma_") for name in table.names)
+    return options.kind == "estimate" and any(map(is_deviation, table.names))
 
 
 LAYOUTS = (  # recognises(table, options), read(table, options); the first that recognises it reads
@@ -488,25 +357,28 @@ def covariances_beside(run, options):
                                   f"{run.places[k]} (every pose has one covariance): write them "
                                   "at the same times")
     P, how = whole_covariances(table.numbers(range(1, width)), options, table.places[0])
-    return dataclasses.replace(run, covariances=in_order(P, options), notes=[
-        *run.notes, f"covariances in {os.path.basename(path)}: {how}", order_note(options)])
+    P, said = in_asked_order(P, options, table.places[0], "a covariance without a header")
+    return dataclasses.replace(run, covariances=P, notes=[
+        *run.notes, f"covariances in the file .cov beside: {how}", *said])
 
 
 def read(path, options):
-    """The run in a text file. Its kind, estimate or truth, is options.kind."""
+    """The run in a text file. Its kind is options.kind: estimate, truth, or the states of estimates
+    without their covariances."""
     table = Table(path)
     run = next(read_it for recognises, read_it in LAYOUTS if recognises(table, options))(
         table, options)
-    if options.kind == "truth":
-        if not run.times:
-            raise ConversionError(f"{path}: no rows (a truth of no time): write one row for each "
-                                  "time")
+    if options.kind == "truth" and not run.times:
+        raise ConversionError(f"{path}: no rows (a truth of no time): write one row for each time")
+    if options.kind != "estimate":
         return run
     run = covariances_beside(run, options)
     if not run.times and run.covariances is None:
         return dataclasses.replace(run, covariances=np.zeros((0, 6, 6)))
+    if run.covariances is None and table.names:
+        refuse_unknown(table, run.layout)
     if run.covariances is None:
         raise ConversionError(f"{path}: no covariances ({run.layout}; without them nothing can be "
-                              "judged): add their columns, or write them to "
+                              "judged): add their 36 or 21 numbers to each row, or write them to "
                               f"{os.path.splitext(path)[0]}.cov")
     return run

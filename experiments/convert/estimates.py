@@ -156,7 +156,7 @@ def with_alignment(found, arguments):
     truth for each."""
     if arguments.kind == "estimate":
         return [(path, without_first(run)) for path, run in found]
-    onto = [estimate_layouts.read(path, dataclasses.replace(arguments, kind="estimate"))
+    onto = [estimate_layouts.read(path, dataclasses.replace(arguments, kind="states"))
             for path in arguments.onto]
     if len(found) == 1 and len(onto) > 1:
         folder = os.path.dirname(found[0][0])
@@ -209,15 +209,23 @@ def write_all(found):
                 os.remove(part)
 
 
+def first_of(paths):
+    more = len(set(paths)) - 1
+    return paths[0] + (f" and {more} more" if more else "")
+
+
 def report(found):
-    """Says on stderr, in one line for all files alike, which layout was taken and why."""
-    said = {}
+    """Says on stderr, in one line for all files alike, which layout was taken and why, and in a
+    line of its own what was guessed."""
+    said, assumed = {}, {}
     for path, run in found:
+        for one in run.assumed:
+            assumed.setdefault(one, []).append(run.path)
         said.setdefault((run.layout, tuple(dict.fromkeys(run.notes))), []).append(run.path)
     for (layout, notes), paths in said.items():
-        more = len(set(paths)) - 1
-        print(f"{paths[0]}{f' and {more} more' if more else ''}: {'; '.join([layout, *notes])}",
-              file=sys.stderr)
+        print(f"{first_of(paths)}: {'; '.join([layout, *notes])}", file=sys.stderr)
+    for guess, paths in assumed.items():
+        print(f"ASSUMED of {first_of(paths)}: {guess}", file=sys.stderr)
     print(f"{len(found)} {'files' if len(found) > 1 else 'file'} written, such as {found[0][0]}",
           file=sys.stderr)
 

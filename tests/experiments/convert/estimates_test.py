@@ -117,7 +117,10 @@ class Layouts(Estimates):
         for numbers, how in ((WHOLE, "36 numbers"), (WHOLE[UPPER], "upper"),
                              (WHOLE[LOWER], "lower")):
             self.write("e.cov", row(1.5, numbers))
-            self.expect(TUM + row(1.5, POSE), WHOLE, "TUM", how, "position first")
+            self.expect(TUM + row(1.5, POSE), WHOLE, "TUM", how, "position-first by --order",
+                        order="position-first")
+            self.expect_refusal(TUM + row(1.5, POSE), "e.cov:1", "2, 2.24",
+                                "--order position-first", "--order rotation-first")
         moved = np.roll(WHOLE, 3, (0, 1))
         self.write("e.cov", row(1.5, moved))
         self.expect(TUM + row(1.5, POSE), WHOLE, order="rotation-first")
@@ -129,30 +132,39 @@ class Layouts(Estimates):
         self.expect_refusal(TUM + row(1.5, POSE), "e.cov", "2 covariances of 1 poses")
 
     def test_wide_tum_is_known_by_the_triangle_that_is_a_covariance(self):
-        self.expect(row(1.5, POSE, WHOLE), WHOLE, "wide TUM", "xyzw")
-        self.expect(row(1.5, POSE, WHOLE[UPPER]), WHOLE, "upper")
-        self.expect(row(1.5, POSE, WHOLE[LOWER]), WHOLE, "lower")
+        first = {"order": "position-first"}
+        self.expect(row(1.5, POSE, WHOLE), WHOLE, "wide TUM", "\nASSUMED of", "order xyzw",
+                    "--quaternion wxyz", **first)
+        self.expect(row(1.5, POSE, WHOLE[UPPER]), WHOLE, "upper", quaternion="xyzw", **first)
+        self.assertNotIn("ASSUMED", self.said)
+        self.expect(row(1.5, POSE, WHOLE[LOWER]), WHOLE, "lower", **first)
+        self.expect_refusal(row(1.5, POSE, WHOLE), "e.txt:1", "--order position-first",
+                            "--order rotation-first")
         self.expect_refusal(row(1.5, POSE, np.zeros(21)), "e.txt:1", "2 of 2", "--triangle upper",
                             "--triangle lower")
         self.expect_refusal(row(1.5, POSE, -np.ones(21)), "0 of 2", "--triangle upper")
         self.expect(row(1.5, POSE, np.arange(21.0)), np.array(
             [[0, 1, 2, 3, 4, 5], [1, 6, 7, 8, 9, 10], [2, 7, 11, 12, 13, 14],
              [3, 8, 12, 15, 16, 17], [4, 9, 13, 16, 18, 19], [5, 10, 14, 17, 19, 20]]),
-            triangle="upper")
+            triangle="upper", **first)
 
     def test_euroc_has_nanoseconds_and_q_w_first(self):
         line = comma(1403636579763555584, POSE[:3], QUATERNION[3], QUATERNION[:3])
-        blanks = EUROC.replace(",", " ")
+        blanks, first = EUROC.replace(",", " "), {"order": "position-first"}
         self.write("e.cov", row("1403636579763555584", WHOLE))
         for text in (EUROC + line, blanks + line.replace(",", " "),
                      "#timestamp p_x p_y p_z q_w q_x q_y q_z\n" + line.replace(",", " ")):
-            self.expect(text, WHOLE, "EuRoC", "in ns", time="1403636579.763555584")
+            self.expect(text, WHOLE, "EuRoC", "in ns", time="1403636579.763555584", **first)
+            self.assertNotIn("ASSUMED", self.said)
         biases = line.replace("\n", "," + comma(np.zeros(9)))
-        self.expect(biases, WHOLE, "17 numbers", "wxyz", time="1403636579.763555584")
-        self.expect_refusal(line, "e.txt:1", "--quaternion wxyz", "--quaternion xyzw")
-        self.expect(line, WHOLE, quaternion="wxyz", time="1403636579.763555584")
+        self.expect(biases, WHOLE, "17 numbers", "ASSUMED", "wxyz", time="1403636579.763555584",
+                    **first)
+        self.expect(line, WHOLE, quaternion="wxyz", time="1403636579.763555584", **first)
         last = row(1403636579763555584, POSE)
-        self.expect(last, WHOLE, quaternion="xyzw", time="1403636579.763555584")
+        self.expect(last, WHOLE, quaternion="xyzw", time="1403636579.763555584", **first)
+        os.remove(self.path("e.cov"))
+        for text in (line, line.replace("\n", "," + comma(WHOLE[UPPER]))):
+            self.expect_refusal(text, "e.txt:1", "--quaternion wxyz", "--quaternion xyzw")
 
     def test_times_are_exact_and_their_unit_is_said(self):
         def time(word, **options):
@@ -202,6 +214,75 @@ class Layouts(Estimates):
             self.expect(header + line, WHOLE, "ROS", time="1.005")
         self.expect_refusal(ROS.replace("position.z", "position.q") + line, "e.txt:1",
                             "no column z")
+
+    def test_a_covariance_may_have_names_of_many_kinds(self):
+        moved = np.roll(WHOLE, 3, (0, 1))
+        pose = "#timestamp [ns], p_x, p_y, p_z, q_x, q_y, q_z, q_w, "
+        whole = [(i, j) for i in range(6) for j in range(6)]
+        triangles = (UPPER, LOWER, tuple(zip(*whole)))
+
+        def expect(form, places, first=0, order="rotation-first", **options):
+            names = ", ".join(form.format(i + first, j + first, 6 * i + j + first)
+                              for i, j in zip(*places))
+            P = moved if order == "rotation-first" else WHOLE
+            text = pose + names + "\n" + comma(1500000000, POSE, P[places])
+            if order:
+                self.expect_refusal(text, "e.txt:2", "named by indices",
+                                    "--order position-first", "--order rotation-first")
+            self.expect(text, WHOLE, "since the header names p_x, q_x first, and "
+                        + form.format(first, first, first).split()[0], order=order, **options)
+            self.assertNotIn("ASSUMED", self.said)
+
+        for form in ("P_{}{}", "P_{}_{}", "cov_{}_{}", "cov_{}{}", "sigma_{}{}", "c{}{}",
+                     "Cov[{}][{}]", "pose_cov_{}_{}", "P{}x{}", "Sigma_{}_{}"):
+            for first in (0, 1):
+                for places in triangles:
+                    expect(form, places, first)
+        for first in (0, 1):
+            expect("cov{2}", triangles[2], first)
+            expect("P_{2:02}", triangles[2], first, order="position-first")
+        names = ", ".join(f"P{n}" for n in range(21))
+        self.expect(f"{pose}{names}\n" + comma(1500000000, POSE, WHOLE[LOWER]), WHOLE,
+                    order="position-first")
+        for words in (("x", "y", "z", "rx", "ry", "rz"),
+                      ("px", "py", "pz", "theta_x", "theta_y", "theta_z")):
+            for form in ("cov_{}_{}", "P_{}_{}", "covariance_{}{}"):
+                names = ", ".join(form.format(words[i], words[j]) for i, j in zip(*UPPER))
+                text = f"{pose}{names}\n" + comma(1500000000, POSE, WHOLE[UPPER])
+                self.expect(text, WHOLE)
+                self.assertNotIn("ASSUMED", self.said)
+                self.expect_refusal(text, "names the order", order="rotation-first")
+        words = ("x", "y", "z", "roll", "pitch", "yaw")
+        names = ", ".join(f"cov_{words[i]}_{words[j]}" for i, j in zip(*UPPER))
+        self.expect(f"{pose}{names}\n" + comma(1500000000, POSE, WHOLE[UPPER]), WHOLE,
+                    "\nASSUMED of", "roll, pitch and yaw")
+
+    def test_parts_of_a_covariance_are_read_and_said(self):
+        pose = "t,tx,ty,tz,qx,qy,qz,qw,"
+        places = [(i, j) for i, j in zip(*UPPER) if i // 3 == j // 3]
+        text = (pose + ",".join(f"P_{i}{j}" for i, j in places) + "\n"
+                + comma(1.5, POSE, [WHOLE[one] for one in places]))
+        self.expect(text, BLOCKS, "between position and rotation", order="position-first")
+        text = (pose + ",".join(f"P_{i}{i}" for i in range(6)) + "\n"
+                + comma(1.5, POSE, np.diag(WHOLE)))
+        self.expect(text, np.diag(np.diag(WHOLE)), "no covariances between components",
+                    order="position-first")
+
+    def test_columns_that_are_not_understood_are_named(self):
+        pose = "t,tx,ty,tz,qx,qy,qz,qw,"
+        names = [f"H_{i}{j}" for i, j in zip(*UPPER)]
+        line = comma(1.5, POSE, WHOLE[UPPER])
+        self.expect_refusal(pose + ",".join(names) + "\n" + line, "e.txt:1", "H_00, H_01",
+                            "and 15 more", "cov_x_x", "cov_0_0", "e.cov")
+        names = [f"P_{i}{j}" for i, j in zip(*UPPER)]
+        names[7] = "P_mid"
+        self.expect_refusal(pose + ",".join(names) + "\n" + line, "e.txt:1", "components 2 and 3",
+                            "P_mid", "add it")
+        names[7], names[20] = "P_12", "P_0_14"
+        self.expect_refusal(pose + ",".join(names) + "\n" + line, "e.txt:1", "P_0_14",
+                            "six components", "cov_x_x")
+        names[20] = "cov_5_5"
+        self.expect_refusal(pose + ",".join(names) + "\n" + line, "e.txt:1", "cov", "leave out")
 
     def test_planar_poses_have_three_components(self):
         heading = 2.5
@@ -253,7 +334,7 @@ class Arrays(Estimates):
         self.arrays = {"mean": self.mean, "covariance": self.P, "truth": np.ones((2, 3, 2)),
                        "time": np.array([0.5, 1.0, 1.5]), "names": np.array(["x_m", "v_mps"])}
 
-    def run_arrays(self, name, kind, **arrays):
+    def run_arrays(self, name, kind, order=None, **arrays):
         path = self.path(name)
         if name.endswith(".npz"):
             np.savez(path, **arrays)
@@ -261,7 +342,7 @@ class Arrays(Estimates):
             savemat(path, arrays)
         self.number = getattr(self, "number", 0) + 1
         folder = self.path(f"out_{self.number}")
-        self.converted(estimates, kind=kind, files=[path], output=folder)
+        self.converted(estimates, kind=kind, files=[path], output=folder, order=order)
         return {os.path.relpath(os.path.join(at, one), folder): self.lines(at, one)
                 for at, _, files in os.walk(folder) for one in files}
 
@@ -280,6 +361,16 @@ class Arrays(Estimates):
                              {"run_0/truth.csv": truth, "run_1/truth.csv": truth})
         self.assertEqual(self.run_arrays("a.npz", "truth", **self.arrays | {
             "truth": np.ones((3, 2))}), {"truth.csv": truth})
+
+    def test_of_poses_may_have_the_rotation_first(self):
+        columns = np.array(["x_m", "y_m", "z_m", "qx", "qy", "qz", "qw"])
+        moved = np.roll(WHOLE, 3, (0, 1))
+        pose = {"mean": np.array([[POSE]]), "names": columns}
+        line, = self.run_arrays("a.npz", "estimate", covariance=moved[None, None],
+                                order="rotation-first", **pose)["run_0/estimate.csv"][1:]
+        np.testing.assert_allclose([float(one) for one in line.split(",")[8:]], WHOLE.ravel())
+        with self.assertRaisesRegex(ConversionError, "no pose in space"):
+            self.run_arrays("a.npz", "estimate", order="rotation-first", **self.arrays)
 
     def test_may_be_errors_whose_truth_is_zero(self):
         arrays = {"error": self.mean, "covariance": self.P, "names": self.arrays["names"]}
@@ -310,6 +401,15 @@ class Arrays(Estimates):
 
 class Files(Estimates):
     LINE = row(1.5, POSE, WHOLE)
+
+    def test_files_alike_are_reported_in_one_line(self):
+        for k in range(3):
+            self.write(f"e_{k}.txt", TUM + row(1.5, POSE))
+            self.write(f"e_{k}.cov", row(1.5, WHOLE))
+        self.converted(estimates, kind="estimate", order="position-first",
+                       files=[self.path(f"e_{k}.txt") for k in range(3)])
+        self.assertEqual(len(self.said.splitlines()), 2)
+        self.assertIn("e_0.txt and 2 more", self.said)
 
     def test_damage_is_named_with_line_and_remedy(self):
         good = TUM + row(1.5, POSE)
@@ -345,23 +445,24 @@ class Files(Estimates):
             os.mkdir(self.path(name))
             self.write(f"{name}/e.txt", text)
         files = [self.path("run_1", "e.txt"), self.path("run_2", "e.txt")]
-        self.expect_refused(estimates, ("run_2/e.txt:2", "not later"), kind="estimate", files=files)
+        first = {"kind": "estimate", "files": files, "order": "position-first"}
+        self.expect_refused(estimates, ("run_2/e.txt:2", "not later"), **first)
         self.assertEqual(os.listdir(self.path("run_1")), ["e.txt"])
         self.write("run_2/e.txt", self.LINE)
-        self.converted(estimates, kind="estimate", files=files)
-        first = self.lines("run_1", "e.csv")
+        self.converted(estimates, **first)
+        lines = self.lines("run_1", "e.csv")
         self.assertEqual(sorted(os.listdir(self.path("run_1"))), ["e.csv", "e.txt"])
-        self.converted(estimates, kind="estimate", files=files, output=self.path("again"))
-        self.assertEqual(self.lines("again", "run_2", "e.csv"), first)
-        self.expect_refused(estimates, ("e.csv", "exists", "-o FOLDER"), kind="estimate",
-                            files=files)
+        self.converted(estimates, output=self.path("again"), **first)
+        self.assertEqual(self.lines("again", "run_2", "e.csv"), lines)
+        self.expect_refused(estimates, ("e.csv", "exists", "-o FOLDER"), **first)
 
     def test_an_interruption_leaves_no_part_of_a_file(self):
         self.write("e.txt", self.LINE)
         rename, estimates.os.rename = os.rename, lambda *_: (_ for _ in ()).throw(OSError("full"))
         try:
             with self.assertRaises(OSError):
-                self.converted(estimates, kind="estimate", files=[self.path("e.txt")])
+                self.converted(estimates, kind="estimate", files=[self.path("e.txt")],
+                               order="position-first")
         finally:
             estimates.os.rename = rename
         self.assertEqual(os.listdir(self.folder), ["e.txt"])
@@ -403,7 +504,8 @@ class Alignment(Estimates):
                        onto=[self.path("e.txt")])
         np.testing.assert_allclose(np.array(self.rows("t.csv"), dtype=float)[:, 1:], self.estimates,
                                    atol=1e-12)
-        self.converted(estimates, kind="estimate", files=[self.path("e.txt")], align="yaw")
+        self.converted(estimates, kind="estimate", files=[self.path("e.txt")], align="yaw",
+                       order="position-first")
         self.assertEqual([one[0] for one in self.rows("e.csv")], ["0.5", "1"])
         self.assertNotIn("not near 0", self.said)
 
