@@ -64,6 +64,12 @@ class JudgeFromPython(unittest.TestCase):
         self.assertAlmostEqual(wrong.ratio.estimate, 1.25, delta=0.06)
         with self.assertRaisesRegex(AssertionError, "optimistic"):
             wrong.raise_if_inconsistent()
+        slight = montecarta.judge(*kalman_filter(300, 40, 0.8), within=1.25)
+        self.assertEqual(slight.answer, "optimistic", slight)
+        self.assertIn("slightly optimistic", slight.sentence)
+        slight.raise_if_inconsistent()
+        with self.assertRaisesRegex(AssertionError, "slightly"):
+            slight.raise_unless_consistent()
 
     def test_says_what_the_program_says(self):
         errors, covariances = kalman_filter(50, 20, 0.5)
@@ -78,6 +84,10 @@ class JudgeFromPython(unittest.TestCase):
         self.assertTrue((families.select_dtypes("number").dtypes == float).all())
         self.assertIn(found.sentence, repr(found))
         self.assertIn("<td>v</td>", found._repr_html_())
+        self.assertEqual(list(found.components), ["x", "v"])
+        of_v = families.query("member == 'v' and family == 'component'").iloc[0]
+        self.assertEqual(found.components["v"], tuple(of_v[["estimate", "lower", "upper"]]))
+        self.assertEqual(montecarta.judge(errors[..., :1], covariances[..., :1, :1]).components, {})
 
     @unittest.skipUnless(shutil.which("gnuplot"), "gnuplot is not installed")
     def test_draws_a_report(self):

@@ -73,6 +73,8 @@ class Judgement:
     ratio : Ratio
         Mean of the squared errors in units of their covariance [1], with its interval; NaN if
         nothing could be tested.
+    components : dict of str to Ratio
+        The ratio of each component by itself; empty if there is only one.
     blocks : dict of str to Block
         The same of position, rotation or heading, and velocity by themselves, where the names of
         the components tell which is which.
@@ -97,6 +99,8 @@ class Judgement:
         self.sentence: str = self._json["reason"]
         self.ratio = next((_ratio_of(test["members"][0]) for test in self._json["families"]
                            if test["family"] == "size"), Ratio(np.nan, np.nan, np.nan))
+        self.components = {member["name"]: _ratio_of(member) for test in self._json["families"]
+                           if test["family"] == "component" for member in test["members"]}
         self.blocks = {block["name"]: Block(block["verdict"], _ratio_of(block))
                        for block in self._json["blocks"]}
 
@@ -161,6 +165,9 @@ class Judgement:
     def raise_if_inconsistent(self) -> None:
         """Refuses an estimator that is wrong. Too few runs to decide are no error.
 
+        It also passes where `sentence` says "slightly optimistic" (`answer` is "optimistic" then):
+        a deviation is shown, and not that it is beyond the margin.
+
         Raises
         ------
         Inconsistent
@@ -173,6 +180,9 @@ class Judgement:
 
     def raise_unless_consistent(self) -> None:
         """Refuses an estimator that is not shown to be right.
+
+        It passes where `answer` is "consistent", even with a deviation that is shown to lie within
+        the margin ("consistent within 1.1, slightly optimistic").
 
         Raises
         ------
@@ -190,10 +200,9 @@ class Judgement:
 
     def _repr_html_(self) -> str:
         colour = {"consistent": "#2a7d3f", "undecided": "#777", "untested": "#777"}
-        members = [(member["name"], _ratio_of(member)) for test in self._json["families"]
-                   if test["family"] in ("size", "component") for member in test["members"]]
+        members = {} if np.isnan(self.ratio.estimate) else {"all": self.ratio}
         rows = "".join(f"<tr><td>{html.escape(name)}</td><td>{ratio}</td></tr>"
-                       for name, ratio in members)
+                       for name, ratio in (members | self.components).items())
         rows += "".join(f"<tr><td>{html.escape(name)}: {block.answer}</td><td>{block.ratio}</td>"
                         "</tr>" for name, block in self.blocks.items())
         notes = "".join(f"<li>{html.escape(note)}</li>" for note in self.notes)
