@@ -108,10 +108,13 @@ def scan_members(u, times):
     """Exactly chi-square if errors are Gaussian; by the runs as well, of which the wider counts."""
     runs, _, d = u.shape
     values = (u**2).mean(axis=2)
-    relative = values / values.mean(axis=0)
+    known = values[:, values.any(axis=0)]
+    relative = known / known.mean(axis=0)
     cubes = [skewness(v) * v.std(ddof=1) ** 3 for v in relative.T]
     common = np.mean(cubes) / np.mean(relative.var(axis=0, ddof=1)) ** 1.5
     for s, of_scan in enumerate(values.T):
+        if runs < 10 and not of_scan.any():
+            continue  # rounded away
         ratio, freedom = of_scan.mean(), runs * d
         exact = 2 * min(stats.chi2.cdf(freedom * ratio, freedom),
                         stats.chi2.sf(freedom * ratio, freedom))

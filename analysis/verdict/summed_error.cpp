@@ -108,13 +108,18 @@ double SummedError::common_skewness() const {
   return n > 0.0 ? cubes / n / std::pow(squares / n, 1.5) : 0.0;
 }
 
+bool SummedError::is_rounded_away(const Scan& scan) const {
+  return scan.nees == 0.0 && scan.n() < static_cast<double>(kFewestRunsOfAPlan) &&
+         ratios().mean > 0.0;
+}
+
 std::vector<MemberTest> SummedError::scan_tests(std::span<const double> times) const {
   std::vector<MemberTest> all;
   const auto law = std::make_shared<ChiSquareLaw>();
   const double skewness = common_skewness();
   for (std::size_t s = 0; s < scans_.size(); ++s) {
     const Scan& scan = scans_[s];
-    if (!(scan.dimensions > 0.0)) continue;
+    if (!(scan.dimensions > 0.0) || is_rounded_away(scan)) continue;
     const Summary runs = scan.runs.result();
     Member member{.from = times[s], .to = times[s], .estimate = scan.ratio()};
     all.push_back(with_runs(exact_test(Family::scan, std::move(member), scan.dimensions, law),

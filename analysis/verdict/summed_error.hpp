@@ -47,7 +47,7 @@ class SummedError {
 
   /// The test of the size by the ratios of the runs.
   MemberTest size_test() const;
-  /// {scan} The tests of single scans; `times` [s].
+  /// {scan} The tests of single scans, without those that are rounded away; `times` [s].
   std::vector<MemberTest> scan_tests(std::span<const double> times) const;
   /// The families of size and scans, for errors of which only the NEES is known; none without a
   /// run.
@@ -62,6 +62,9 @@ class SummedError {
  private:
   /// Skewness of the ratio of one run at one scan, over all scans together.
   double common_skewness() const;
+  /// Whether the errors of a scan, and not of all, are exactly 0 in so few runs that this happens
+  /// by chance where numbers have few digits.
+  bool is_rounded_away(const Scan& scan) const;
 
   std::vector<Scan> scans_;
   SummaryOf ratios_;

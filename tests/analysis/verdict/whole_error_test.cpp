@@ -271,6 +271,27 @@ TEST(WholeError, RejectsOneRunByASingleScan) {
   EXPECT_EQ(name_of(found.find(Family::scan)->strongest()), "at 31.0 s");
 }
 
+/// The answer on runs whose errors are exactly 0 at the first `zeros` scans.
+Answer answer_with_zeros(std::uint64_t runs, std::size_t zeros) {
+  WholeError sums(3, kScansOfARun);
+  for (std::uint64_t run = 0; run < runs; ++run) {
+    WhitenedRun errors = drawn_run({}, 8, run, kScansOfARun);
+    std::fill_n(errors.whitened.begin(), 3 * zeros, 0.0);
+    errors.standardised = errors.whitened;
+    sums.add(errors, nees_of(errors));
+  }
+  return verdict_of(sums, 3, kScansOfARun, runs).answer;
+}
+
+// Errors of files with few digits are exactly 0 here and there, by chance also in a few runs at
+// once.
+TEST(WholeError, TakesErrorsOfExactlyZeroForRoundedOnesInFewRuns) {
+  EXPECT_EQ(answer_with_zeros(1, 1), Answer::undecided);
+  EXPECT_EQ(answer_with_zeros(9, 1), Answer::undecided);
+  EXPECT_EQ(answer_with_zeros(10, 1), Answer::conservative);
+  EXPECT_EQ(answer_with_zeros(1, kScansOfARun), Answer::conservative) << "a copy of the truth";
+}
+
 // One error of 30 deviations in 50 runs makes no filter optimistic, but it is named.
 TEST(WholeError, NamesTheLargestErrorWithRunAndTime) {
   WholeError sums(3, kScansOfARun);
