@@ -17,6 +17,8 @@ std::string sentence_on(const std::string& state, const std::string& convention)
     return "position in the frame of the map, rotation in that of the estimate";
   if (convention == "right-invariant")
     return "right-invariant: the logarithm of mean times inverse truth";
+  if (convention == "left-invariant")
+    return "left-invariant: the logarithm of inverse truth times mean";
   return state == "vector" ? "estimate minus truth"
                            : "estimate minus truth in the frame of the map";
 }

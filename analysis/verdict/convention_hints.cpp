@@ -80,9 +80,13 @@ NeesBy<kLayoutMistakes.size()> nees_by_mistake(const ErrorRows& errors,
   for (std::size_t i = 0; i < units.size(); ++i) {
     if (units[i] == "rad") scale(static_cast<Eigen::Index>(i)) = kDegree;
   }
-  nees[1] = nees_with(errors, [&](const Eigen::MatrixXd& P) {
-    return Eigen::MatrixXd(scale.asDiagonal() * P * scale.asDiagonal());
-  });
+  const Eigen::VectorXd from_rad = scale.cwiseInverse();
+  for (const std::size_t mistake : {std::size_t{1}, std::size_t{2}}) {
+    const Eigen::VectorXd& by = mistake == 1 ? scale : from_rad;
+    nees[mistake] = nees_with(errors, [&](const Eigen::MatrixXd& P) {
+      return Eigen::MatrixXd(by.asDiagonal() * P * by.asDiagonal());
+    });
+  }
   return nees;
 }
 

@@ -20,8 +20,8 @@ namespace montecarta::analysis {
 /// Mistakes in the layout of a covariance, after which it may fit the errors as it should.
 inline constexpr std::array kLayoutMistakes = {
     "rotation before position",  ///< the components of the covariance begin with the rotation
-    "angles in degrees"          ///< its angles are in degrees
-};
+    "angles in degrees",         ///< its angles are in degrees
+    "angles in rad where those of estimates and truths are in degrees"};
 
 /// Verdicts on the imported estimates of a cell, one for each convention of the error and one for
 /// each mistake in the layout.

@@ -150,7 +150,7 @@ void check_drives(const ResultDescription& d, const Check& check) {
 
 std::vector<std::string_view> nees_columns() {
   std::vector<std::string_view> names;
-  for (std::size_t k = 0; k < kConventionsInPlane; ++k)
+  for (std::size_t k = 0; k < kFirstConventions; ++k)
     names.emplace_back(kErrorConventions.at(k).column);
   return names;
 }

@@ -116,7 +116,7 @@ ColumnKind nees_by() {
   return column(kErrorConventions[K].column, "pose", Element::f64, {Axis::scan}, "1",
                 kErrorConventions[K].meaning, has_convention<K>);
 }
-static_assert(kErrorConventions.size() == 4, "make_table() has a column of each");
+static_assert(kErrorConventions.size() == 5, "make_table() has a column of each");
 
 // NOLINTNEXTLINE(readability-function-size): a table, a column in two lines
 std::vector<ColumnKind> make_table() {
@@ -157,6 +157,7 @@ std::vector<ColumnKind> make_table() {
       nees_by<1>(),
       nees_by<2>(),
       nees_by<3>(),
+      nees_by<4>(),
       of_report("map_size", "pose", f64, "landmarks in the map, mean over the particles",
                 [](Report r) { return r.map_size; }),
       of_report("association_correct", "association", f64,

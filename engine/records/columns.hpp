@@ -31,11 +31,15 @@ inline constexpr std::array kErrorConventions = {
                      "imported: NEES if the covariance were of the error body"},
     StoredConvention{"right-invariant", "nees_right_invariant",
                      "imported: NEES if the covariance were of the error right-invariant"},
+    StoredConvention{"left-invariant", "nees_left_invariant",
+                     "imported: NEES if the covariance were of the error left-invariant"},
     StoredConvention{"world-body", "nees_world_body",
                      "imported: NEES if the covariance were of the error world-body"}};
 
 /// The first of them are those of a pose in the plane, where world-body is world.
-inline constexpr std::size_t kConventionsInPlane = 3;
+inline constexpr std::size_t kConventionsInPlane = 4;
+/// The first of them are in the files of every version that has any.
+inline constexpr std::size_t kFirstConventions = 3;
 
 enum class Element : std::uint8_t { f64, u8, u16, u32, u64 };
 std::size_t size_of(Element element);

@@ -20,6 +20,7 @@
 #include "experiments/judging/run_files.hpp"
 #include "experiments/text/words.hpp"
 
+#include <algorithm>
 #include <array>
 #include <iostream>
 #include <memory>
@@ -70,8 +71,8 @@ JudgingOptions judging_options(const Arguments& arguments) {
   options.convention = convention_of(arguments);
   options.match.tolerance =
       arguments.number("tolerance", 0.0, 1e6).value_or(options.match.tolerance);
-  options.match.interpolate = arguments.has("interpolate");
   options.match.longest_gap = arguments.number("longest-gap", 0.0, 1e9);
+  options.match.interpolate = arguments.has("interpolate") || options.match.longest_gap;
   options.equal_times = equal_times_of(arguments);
   if (const auto name = arguments.text("anchor")) options.anchor = anchor_named(*name);
   options.adds_truth_covariance = arguments.has("truth-cov");
@@ -107,6 +108,17 @@ void refuse_options(const Arguments& arguments, std::span<const std::string_view
   for (const std::string_view option : options) {
     if (!arguments.has(std::string(option))) continue;
     throw StudyError("--{}: not beside {}: leave it out", option, what);
+  }
+}
+
+/// Throws StudyError if an operand is a number that was meant as the value of --interpolate.
+void refuse_number_as_file(const std::vector<std::string>& operands) {
+  for (const std::string& operand : operands) {
+    if (!to_number(operand) || std::filesystem::exists(operand)) continue;
+    throw StudyError(
+        "{}: is there no such file (--interpolate takes no number): if it is the longest gap of "
+        "the truth in s, give it by --longest-gap {}",
+        operand, operand);
   }
 }
 
@@ -163,18 +175,24 @@ std::unique_ptr<EstimateSource> pair_of(const Arguments& arguments,
   return std::make_unique<EstimateFiles>(std::move(files), how);
 }
 
-/// The estimates that the operands name: CSV files, or one HDF5 file of arrays.
-std::unique_ptr<EstimateSource> source_of(const Arguments& arguments, JudgingOptions& options) {
-  const std::vector<std::string>& operands = arguments.operands();
-  if (h5::is_hdf5(operands.front())) return arrays_of(arguments);
-  const std::string ending = std::filesystem::path(operands.front()).extension().string();
-  if (ending == ".h5" || ending == ".hdf5" || ending == ".mat" || ending == ".npz") {
+/// Throws StudyError if a file is called like arrays, which are read from HDF5.
+void refuse_other_arrays(const std::string& path) {
+  const std::string ending = std::filesystem::path(path).extension().string();
+  constexpr std::array<std::string_view, 5> kOfArrays = {".h5", ".hdf5", ".mat", ".npz", ".npy"};
+  if (std::ranges::count(kOfArrays, ending) > 0) {
     throw StudyError(
         "{}: is there no such file, or no HDF5 file (arrays are in one): give its name; convert "
         ".npz and a .mat of version 7 by experiments/convert/estimates.py, or call "
         "montecarta.judge from Python",
-        operands.front());
+        path);
   }
+}
+
+/// The estimates that the operands name: CSV files, or one HDF5 file of arrays.
+std::unique_ptr<EstimateSource> source_of(const Arguments& arguments, JudgingOptions& options) {
+  const std::vector<std::string>& operands = arguments.operands();
+  if (h5::is_hdf5(operands.front())) return arrays_of(arguments);
+  refuse_other_arrays(operands.front());
   if (arguments.has("names")) {
     throw StudyError("--names: needs an HDF5 file (a CSV file has a header): leave it out");
   }
@@ -211,6 +229,7 @@ std::unique_ptr<EstimateSource> source_of(const Arguments& arguments, JudgingOpt
 int judge_command(const Arguments& arguments) {
   JudgingOptions options = judging_options(arguments);
   refuse_input_as_output(options.output, arguments.operands());
+  if (options.match.interpolate) refuse_number_as_file(arguments.operands());
   std::unique_ptr<EstimateSource> source = source_of(arguments, options);
   if (!options.windows.empty()) {
     constexpr std::array<std::string_view, 4> kOfWhole = {"anchor", "pair", "truth-cov",

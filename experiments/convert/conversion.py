@@ -4,8 +4,11 @@ that montecarta reads (experiments/RECORDED_DRIVES.md). Needs NumPy and SciPy (.
 group `convert`).
 """
 import argparse
+import multiprocessing
 import os
 import sys
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from decimal import Decimal
 
 try:
@@ -87,13 +90,25 @@ def numbers_in(path, width, record_is_line=True):
     return np.array(words, dtype=float).reshape(-1, width)
 
 
+def loaded_elsewhere(path):
+    """What SciPy reads of a MATLAB file, read by another process: by some damage SciPy ends it."""
+    try:
+        with ProcessPoolExecutor(1, multiprocessing.get_context("fork")) as other:
+            return other.submit(scipy.io.loadmat, path, appendmat=False).result()
+    except BrokenProcessPool:
+        raise ConversionError(f"{path}: is damaged (reading it ends the program that reads it): "
+                              "take the file as published, or save it again") from None
+
+
 class MatFile:
     """The variables of a MATLAB file up to version 7."""
 
     def __init__(self, path):
         self.path = path
         try:
-            self.variables = scipy.io.loadmat(path, appendmat=False)
+            self.variables = loaded_elsewhere(path)
+        except ConversionError:
+            raise
         except Exception as fault:  # SciPy raises various errors for a damaged file
             if isinstance(fault, OSError) and fault.errno:
                 raise ConversionError(f"{path}: cannot be opened ({fault.strerror}): check the "

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Reads the estimates of many runs from arrays in one .npz file or one MATLAB file: `mean` {run,
 scan, column} or `error` {run, scan, d}, `covariance` {run, scan, d, d}, `truth` {run, scan, column}
-or {scan, column}; optional `time` {scan} or {run, scan} and `names` {column}. NaN is missing.
+or {scan, column}; optional `time` {scan} or {run, scan} and `names` {column}, or one text with
+commas. NaN is missing.
 """
 import os
 
@@ -57,8 +58,10 @@ class Arrays:
         if given is None:
             return tuple(f"{prefix or 'state_'}{k}" for k in range(count)), [
                 "no names: no component is wrapped as an angle (names = x_m, heading_rad, ...)"]
-        names = tuple(prefix + str(np.ravel(name)[0] if np.size(name) else "").strip()
-                      for name in np.ravel(given))
+        texts = [str(np.ravel(name)[0] if np.size(name) else "") for name in np.ravel(given)]
+        if len(texts) == 1:
+            texts = texts[0].split(",")
+        names = tuple(prefix + text.strip() for text in texts)
         if len(names) != count or not all(name[len(prefix):] for name in names):
             raise ConversionError(f"{self.path}: 'names' has {len(names)} names of {count} columns "
                                   "(each has one): save one for each column")
@@ -114,7 +117,10 @@ def runs_in(path, options):
             raise ConversionError(f"{path}: --order {options.order} (the state is no pose in "
                                   f"space, but {','.join(names)}): leave it out")
         return [(k, run_of(k, values[k], in_order(covariance[k], options))) for k in range(runs)]
-    truth = np.zeros((scans, width)) if mean is None else arrays.get("truth", (2, 3))
+    if mean is None:
+        raise ConversionError(f"{path}: 'error' needs no truth (an error is a difference from it): "
+                              "judge the estimates without --truth")
+    truth = arrays.get("truth", (2, 3))
     if truth is None:
         raise ConversionError(f"{path}: no 'truth' (that of 'mean' is needed): save it as {{run, "
                               "scan, column}}")

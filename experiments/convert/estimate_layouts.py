@@ -244,8 +244,8 @@ def read_square(table, options):
     if representation == "gaussian_se3" and options.kind == "estimate":
         order = {"translation_rotation": "position-first",
                  "rotation_translation": "rotation-first"}.get(declared.get("TANGENT_ORDER"))
-        error = {"right_perturbation": "body", "left_perturbation": "right-invariant"}.get(
-            declared.get("TANGENT_CONVENTION"))
+        error = {"right_perturbation": "left-invariant",
+                 "left_perturbation": "right-invariant"}.get(declared.get("TANGENT_CONVENTION"))
         if not order or not error:
             raise ConversionError(f"{table.path}: no TANGENT_ORDER or TANGENT_CONVENTION (SQUARE "
                                   "declares them): add the lines")

@@ -143,8 +143,10 @@ void CsvRows::refuse_other_separators(std::string_view row) const {
                      kDecimalPoints));
   }
   if (row.find(',') != row.npos || !has_letter(row)) return;
-  if (row.find_first_of("\t ") == row.npos) return;
-  refuse(std::string(row.find('\t') != row.npos ? "tabs" : "blanks") +
+  if (row.find_first_of("\t |") == row.npos) return;
+  refuse(std::string(row.find('\t') != row.npos  ? "tabs"
+                     : row.find('|') != row.npos ? "vertical bars"
+                                                 : "blanks") +
          " separate the columns (commas are read): write commas");
 }
 
@@ -197,11 +199,25 @@ bool CsvRows::next() {
   return has_rows_ = true;
 }
 
+namespace {
+
+/// Whether a text stands for a number that is missing.
+bool is_name_of_nothing(std::string_view text) {
+  constexpr std::array kNames = {"", "nan", "na", "n/a", "null", "none", "-", "--"};
+  std::string small(text.substr(0, text.find('(')));
+  std::ranges::transform(small, small.begin(), [](unsigned char c) { return std::tolower(c); });
+  return std::ranges::count(kNames, small) > 0;
+}
+
+}  // namespace
+
 double CsvRows::number(std::size_t i, const char* noun) const {
   if (const std::optional<double> value = to_number(field(i))) return *value;
   const bool is_quoted = field(i).starts_with('"') || field(i).starts_with('\'');
   refuse(formatted("'{}' is no {} (a finite number is needed): {}", excerpt(field(i)), noun,
-                   is_quoted ? "remove the quotes" : "write e.g. 12.5"));
+                   is_quoted                      ? "remove the quotes"
+                   : is_name_of_nothing(field(i)) ? "leave out rows in which something is missing"
+                                                  : "write e.g. 12.5"));
 }
 
 void CsvRows::refuse_equal_times(const std::string& other_remedy) const {

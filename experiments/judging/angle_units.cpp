@@ -55,6 +55,14 @@ double agreement_with_motion(const StateRows& rows, const AngleColumn& heading, 
   return distances > 0.0 ? cosines / distances : 0.0;
 }
 
+bool moves_in_degrees(const StateRows& rows, const AngleColumn& heading) {
+  return agreement_with_motion(rows, heading, kDegree) > 0.9 &&
+         agreement_with_motion(rows, heading, 1.0) < 0.5;
+}
+
+constexpr const char* kMotionInDegrees =
+    "in degrees it is the direction of motion, in rad it is not";
+
 /// The reason why an angle beyond two turns is in degrees; empty if it may be in rad.
 std::string sign_of_degrees(const StateRows& rows, const AngleColumn& angle) {
   constexpr double kLeastWrap = 330.0, kMostWrap = 360.5;
@@ -69,11 +77,7 @@ std::string sign_of_degrees(const StateRows& rows, const AngleColumn& angle) {
     return formatted("{} of {} steps from row to row are beyond pi", large, steps);
   }
   if (wraps > 0) return "it steps by nearly 360 where degrees begin again";
-  if (angle.is_heading && agreement_with_motion(rows, angle, kDegree) > 0.9 &&
-      agreement_with_motion(rows, angle, 1.0) < 0.5) {
-    return "in degrees it is the direction of motion, in rad it is not";
-  }
-  return "";
+  return angle.is_heading && moves_in_degrees(rows, angle) ? kMotionInDegrees : "";
 }
 
 std::vector<AngleColumn> angles_of(const StateRows& rows) {
@@ -96,6 +100,18 @@ std::string place_in(const StateRows& rows, const std::filesystem::path& path, s
   return formatted("{}:{}", path, rows.line[row]);
 }
 
+/// A note on a heading beyond half a turn that is the direction of motion in degrees only.
+std::string note_on_heading(const StateRows& rows, const AngleColumn& heading,
+                            const std::filesystem::path& path) {
+  const auto beyond =
+      std::ranges::find_if(heading.value, [](double value) { return std::abs(value) > kPi; });
+  if (!heading.is_heading || beyond == heading.value.end() || !moves_in_degrees(rows, heading))
+    return "";
+  const auto row = static_cast<std::size_t>(beyond - heading.value.begin());
+  return formatted("{}: {} {} (it is judged as rad; {}): is it in degrees?",
+                   place_in(rows, path, row), heading.name, to_text(*beyond), kMotionInDegrees);
+}
+
 }  // namespace
 
 void require_radians(const StateRows& rows, const std::filesystem::path& path) {
@@ -113,6 +129,7 @@ void require_radians(const StateRows& rows, const std::filesystem::path& path) {
 
 std::string note_on_angles(const StateRows& rows, const std::filesystem::path& path) {
   for (const AngleColumn& angle : angles_of(rows)) {
+    if (const std::string note = note_on_heading(rows, angle, path); !note.empty()) return note;
     const auto beyond = first_beyond(angle);
     if (!beyond) continue;
     const bool begins_there = *beyond == 0 && angle.is_orientation;

@@ -131,9 +131,9 @@ class CovarianceColumns {
 
   [[noreturn]] void refuse_missing(std::size_t i, std::size_t j) const {
     throw StudyError(
-        "{}: no {} (a verdict needs the whole covariance, one triangle of it, or whole blocks): "
-        "add the column",
-        place_, element_name(i, j));
+        "{}: no {} (the state has the components {}; a verdict needs their whole covariance, one "
+        "triangle of it, or whole blocks): add the column, or leave out what is not estimated",
+        place_, element_name(i, j), joined(shape_.components, ","));
   }
 
   /// {component} The first component with which it is correlated, also through others.

@@ -19,7 +19,8 @@ namespace {
 using Convention = ErrorConvention;
 
 constexpr std::array kConventions = {Convention::world, Convention::body,
-                                     Convention::right_invariant, Convention::world_body};
+                                     Convention::right_invariant, Convention::left_invariant,
+                                     Convention::world_body};
 static_assert(kConventions.size() == kErrorConventions.size(), "all are stored, in this order");
 constexpr double kSmallTurn = 1e-5;  // [rad] below this, series of second order are exact
 
@@ -36,6 +37,9 @@ Eigen::Vector3d pose_error(Convention convention, const Eigen::Vector3d& mean,
   } else if (convention == Convention::right_invariant) {  // mean = exp(error) truth
     const Eigen::Vector2d turned = Eigen::Rotation2Dd(error(2)) * Eigen::Vector2d(truth.head<2>());
     const Eigen::Vector2d shift = mean.head<2>() - turned;
+    error.head<2>() = filters::exponential_jacobian(error(2)).partialPivLu().solve(shift);
+  } else if (convention == Convention::left_invariant) {  // mean = truth exp(error)
+    const Eigen::Vector2d shift = Eigen::Rotation2Dd(-truth(2)) * Eigen::Vector2d(error.head<2>());
     error.head<2>() = filters::exponential_jacobian(error(2)).partialPivLu().solve(shift);
   }
   return error;
@@ -71,24 +75,32 @@ class ErrorsInSpace {
   ErrorsInSpace(Convention convention, const Eigen::VectorXd& mean, const Eigen::VectorXd& truth)
       : convention_(convention),
         mean_(quaternion_in(mean)),
-        turned_(mean_ * quaternion_in(truth).conjugate()),
-        turn_(rotation_vector(turned_)) {
-    const bool is_in_body = convention == Convention::body || convention == Convention::world_body;
-    rotation_ = is_in_body ? rotation_vector(quaternion_in(truth).conjugate() * mean_) : turn_;
+        truth_(quaternion_in(truth)),
+        turned_(mean_ * truth_.conjugate()) {
+    const bool is_in_map =
+        convention == Convention::world || convention == Convention::right_invariant;
+    rotation_ = rotation_vector(is_in_map ? turned_ : truth_.conjugate() * mean_);
   }
 
   const Eigen::Vector3d& of_rotation() const { return rotation_; }
   Eigen::Vector3d of_vector(const Eigen::Vector3d& mean, const Eigen::Vector3d& truth) const {
     if (convention_ == Convention::body) return mean_.conjugate() * (mean - truth);
-    if (convention_ != Convention::right_invariant) return mean - truth;
-    const Eigen::Vector3d shift = mean - turned_ * truth;  // mean = exp(error) truth
-    return exponential_jacobian_in_space(turn_).partialPivLu().solve(shift);
+    if (convention_ == Convention::right_invariant)  // mean = exp(error) truth
+      return without_turn(mean - turned_ * truth);
+    if (convention_ == Convention::left_invariant)  // mean = truth exp(error)
+      return without_turn(truth_.conjugate() * (mean - truth));
+    return mean - truth;
   }
 
  private:
+  /// The part of the logarithm that belongs to a shift beside the rotation.
+  Eigen::Vector3d without_turn(const Eigen::Vector3d& shift) const {
+    return exponential_jacobian_in_space(rotation_).partialPivLu().solve(shift);
+  }
+
   Convention convention_;
-  Eigen::Quaterniond mean_, turned_;  ///< rotation of the estimate, and from the truth to it
-  Eigen::Vector3d turn_, rotation_;
+  Eigen::Quaterniond mean_, truth_, turned_;  ///< turned_: rotation from the truth to the estimate
+  Eigen::Vector3d rotation_;
 };
 
 /// Writes mean - truth of the columns from `column` on to the components from `component` on,
@@ -141,7 +153,8 @@ ErrorConvention stated_error(const StateShape& shape, const std::filesystem::pat
   if (!said) {
     throw StudyError(
         "judge: --error is missing (the verdict depends on the error that the covariance "
-        "describes): give --error world, body, right-invariant or, in space, world-body, which "
+        "describes): give --error world, body, right-invariant, left-invariant or, in space, "
+        "world-body, which "
         "montecarta judge --help explains");
   }
   if (std::ranges::find(known, *said) != known.end()) return *said;
@@ -172,7 +185,7 @@ Eigen::Matrix3d covariance_in_map(Convention convention, const Eigen::Vector3d& 
                                   const Eigen::Matrix3d& covariance) {
   if (convention == Convention::world) return covariance;
   Eigen::Matrix3d map_from_error = Eigen::Matrix3d::Identity();
-  if (convention == Convention::body) {
+  if (convention == Convention::body || convention == Convention::left_invariant) {
     map_from_error.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(mean(2)).toRotationMatrix();
   } else {  // EQUATIONS (15.3)
     map_from_error.topRightCorner<2, 1>() = filters::quarter_turn() * mean.head<2>();

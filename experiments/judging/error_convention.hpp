@@ -14,9 +14,9 @@ namespace montecarta::experiments {
 
 /// Definition of the error that a covariance describes (STATISTICS 19), in the order of
 /// kErrorConventions.
-enum class ErrorConvention { world, body, right_invariant, world_body };
+enum class ErrorConvention { world, body, right_invariant, left_invariant, world_body };
 
-/// Name of a convention: "world", "body", "right-invariant" or "world-body".
+/// Name of a convention: "world", "body", "right-invariant", "left-invariant" or "world-body".
 std::string name_of(ErrorConvention convention);
 /// Name of the column with the NEES under a convention: "nees_world", ...
 std::string nees_column(ErrorConvention convention);

@@ -221,7 +221,11 @@ StateRows EstimateArrays::states_of(const Array& array, std::size_t run,
           scan, array.name);
     }
     const double at = time.empty() ? static_cast<double>(s) : time[s];
-    if (!std::isfinite(at) || (!rows.time.empty() && !(at > rows.time.back()))) {
+    if (!std::isfinite(at)) {
+      throw StudyError("{}: time {} is not finite (the scan has a state): write its time in s",
+                       scan, to_text(at));
+    }
+    if (!rows.time.empty() && !(at > rows.time.back())) {
       throw StudyError(
           "{}: time {} s is not later than that of the scan before: sort the scans by time", scan,
           to_text(at));

@@ -59,7 +59,8 @@ Matrix6 adjoint(const Eigen::Isometry3d& pose) {
 Matrix6 to_body(ErrorConvention convention, const Eigen::Isometry3d& mean) {
   if (convention == ErrorConvention::right_invariant) return adjoint(reversed(mean));
   Matrix6 found = Matrix6::Identity();
-  if (convention == ErrorConvention::body) return found;
+  if (convention == ErrorConvention::body || convention == ErrorConvention::left_invariant)
+    return found;
   found.topLeftCorner<3, 3>() = mean.linear().transpose();
   if (convention == ErrorConvention::world)
     found.bottomRightCorner<3, 3>() = mean.linear().transpose();

@@ -166,6 +166,7 @@ void LikelyMistakes::add(std::size_t cell, const StateRows& rows, const std::fil
   of_cell.shape = rows.shape;
   of_cell.marked.resize(rows.shape.dimension());
   of_cell.rows += rows.time.size();
+  const std::uint64_t copies_before = of_cell.later_copies;
   for (std::size_t row = 0; row < rows.time.size(); ++row) {
     const std::size_t line = rows.line[row];
     mark(rows, row, path, of_cell);
@@ -175,8 +176,13 @@ void LikelyMistakes::add(std::size_t cell, const StateRows& rows, const std::fil
     if (row == 0 && compares_starts_) compare_starts(rows, path, truth, of_cell);
     if (!is_copy(rows, row, truth)) continue;
     if (of_cell.copies++ == 0) of_cell.first_copy = place_of_line(path, line);
-    of_cell.later_copies += row > 0 ? 1 : 0;
+    if (row == 0) continue;  // it may be known exactly
+    ++of_cell.later_copies;
+    if (rows.covariance[row].isZero(0.0) && of_cell.blanks++ == 0)
+      of_cell.first_blank = place_of_line(path, line);
   }
+  const std::uint64_t copies = of_cell.later_copies - copies_before;
+  of_cell.has_copied_run = of_cell.has_copied_run || 2 * copies > rows.time.size();
 }
 
 /// Counts a run whose first position is a hundred deviations or more from the truth.
@@ -187,9 +193,12 @@ void LikelyMistakes::compare_starts(const StateRows& rows, const std::filesystem
   ++cell.runs;
   const Eigen::VectorXd& start = truth.state[nearest_row(truth, rows.time.front())];
   const double distance = (rows.state.front().head<2>() - start.head<2>()).norm();
-  const double deviation =
-      std::sqrt(std::max(rows.covariance.front().diagonal().head<2>().sum(), 0.0));
-  if (!(distance > kFarDistance && distance > kFarDeviations * deviation)) return;
+  double variance = 0.0;  // the first that is claimed, for a start that is known exactly
+  for (std::size_t row = 0; row < rows.time.size() && !(variance > 0.0); ++row) {
+    variance = rows.covariance[row].diagonal().head<2>().sum();
+  }
+  if (!(variance > 0.0)) return;
+  if (!(distance > kFarDistance && distance > kFarDeviations * std::sqrt(variance))) return;
   if (cell.apart++ > 0) return;
   cell.distance = distance;
   cell.first_apart = place_of_line(path, rows.line.front());
@@ -226,6 +235,24 @@ void LikelyMistakes::add_marks(const OfCell& cell, std::vector<std::string>& not
   }
 }
 
+/// Adds sentences on rows that equal the truth.
+void LikelyMistakes::add_copies(const OfCell& cell, const std::string& other,
+                                std::vector<std::string>& notes) {
+  if (cell.blanks > 0) {
+    notes.push_back(
+        formatted("{}: error and covariance are all 0 in {}, the first in {} (such rows are in no "
+                  "test): if nothing was estimated there, leave them out, or write NaN in arrays",
+                  cell.label, of_rows(cell.blanks, cell.rows), cell.first_blank));
+  }
+  if (cell.later_copies > cell.blanks &&
+      (cell.has_copied_run || 10 * cell.later_copies > cell.rows)) {
+    notes.push_back(formatted(
+        "{}: the estimates equal the {}, number by number, in {}, the first in {}{}", cell.label,
+        other, of_rows(cell.copies, cell.rows), cell.first_copy,
+        other == "truth" ? ": are they a copy of it?" : ": is one file a copy of the other?"));
+  }
+}
+
 void LikelyMistakes::add_notes(const OfCell& cell, std::vector<std::string>& notes) const {
   const std::string other = is_pair_ ? "second estimates" : "truth";
   add_marks(cell, notes);
@@ -254,12 +281,7 @@ void LikelyMistakes::add_notes(const OfCell& cell, std::vector<std::string>& not
                   cell.label, cell.apart, cell.runs, cell.runs == 1 ? "run begins" : "runs begin",
                   compact(cell.distance), cell.first_apart));
   }
-  if (10 * cell.later_copies > cell.rows) {  // the first row may be known exactly
-    notes.push_back(
-        formatted("{}: the estimates equal the {}, number by number, in {}, the first in {}{}",
-                  cell.label, other, of_rows(cell.copies, cell.rows), cell.first_copy,
-                  is_pair_ ? ": is one file a copy of the other?" : ": are they a copy of it?"));
-  }
+  add_copies(cell, other, notes);
 }
 
 std::vector<std::string> LikelyMistakes::notes() const {

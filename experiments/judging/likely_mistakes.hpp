@@ -63,6 +63,9 @@ class LikelyMistakes {
     std::uint64_t copies = 0;        ///< number of rows that equal the truth
     std::uint64_t later_copies = 0;  ///< those that are not the first row of a file
     std::string first_copy;          ///< file and line of the first of them
+    bool has_copied_run = false;     ///< whether most rows of a run are such
+    std::uint64_t blanks = 0;        ///< those of the later ones with a covariance of 0
+    std::string first_blank;         ///< file and line of the first of them
     std::uint64_t runs = 0;
     std::uint64_t apart = 0;  ///< runs that begin far from their truth for what they claim
     double distance = 0.0;    ///< [m] of the first of them
@@ -77,6 +80,8 @@ class LikelyMistakes {
                            OfCell& cell) const;
   static void compare_starts(const StateRows& rows, const std::filesystem::path& path,
                              const StateRows& truth, OfCell& cell);
+  static void add_copies(const OfCell& cell, const std::string& other,
+                         std::vector<std::string>& notes);
   static void add_marks(const OfCell& cell, std::vector<std::string>& notes);
   void add_notes(const OfCell& cell, std::vector<std::string>& notes) const;
 

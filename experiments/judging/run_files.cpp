@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cctype>
 #include <map>
+#include <set>
 #include <span>
 
 namespace montecarta::experiments {
@@ -56,14 +57,14 @@ void add_run(const NumberedFile& file, FilesByRun& files) {
     throw StudyError(
         file.path.string() +
         ": has no run number (neither the file nor a folder is named after one; a number "
-        "behind other letters belongs to the name): name it or its folder e.g. "
-        "run_0007 or ekf_7");
+        "behind other letters belongs to the name): name it or its folder e.g. run_0007 or ekf_7, "
+        "or give --cell NAME if all are runs of one estimator");
   }
   const auto [there, is_new] = files.try_emplace(file.run, file.path);
   if (is_new) return;
   throw StudyError(
       "{}: run {} again ({} has the same number and the same estimator): give each run a number, "
-      "each estimator a folder or a name",
+      "each estimator a folder or a name, or --cell NAME if all are runs of one estimator",
       file.path, to_text(file.run), there->second);
 }
 
@@ -145,13 +146,19 @@ bool are_consecutive(const FilesByRun& runs, bool are_called_runs) {
   return true;
 }
 
+/// All files that --truth names.
+std::vector<fs::path> all_truths(const std::vector<std::string>& truths) {
+  std::vector<fs::path> files;
+  for (const std::string& word : truths) {
+    for (fs::path& file : truths_in(word)) files.push_back(std::move(file));
+  }
+  return files;
+}
+
 /// The truth of each run. `is_unnumbered` says that there is one estimate without a number.
 FilesByRun truths_of(const FilesByRun& first, const std::vector<std::string>& truths,
                      bool is_unnumbered) {
-  std::vector<fs::path> truth_files;
-  for (const std::string& word : truths) {
-    for (fs::path& file : truths_in(word)) truth_files.push_back(std::move(file));
-  }
+  const std::vector<fs::path> truth_files = all_truths(truths);
   FilesByRun truth_of;
   if (truth_files.size() != 1) {
     for (const NumberedFile& file : numbered_files(truth_files)) add_run(file, truth_of);
@@ -163,6 +170,57 @@ FilesByRun truths_of(const FilesByRun& first, const std::vector<std::string>& tr
     if (is_of_all || run == of_run) truth_of.emplace(run, truth_files.front());
   }
   return truth_of;
+}
+
+/// Whether each file has a run number that no other one has.
+bool have_own_numbers(const std::vector<NumberedFile>& files) {
+  std::set<RunKey> runs;
+  for (const NumberedFile& file : files) runs.insert(file.run);
+  return runs.size() == files.size() && !runs.contains(RunKey());
+}
+
+/// Files by the words in which their paths differ, e.g. MH_01_easy and V1_01_easy.
+std::map<std::string, fs::path> by_words(const std::vector<fs::path>& paths) {
+  std::vector<std::vector<std::string>> parts;
+  for (const fs::path& path : paths) {
+    std::vector<std::string>& own = parts.emplace_back();
+    for (const fs::path& part : path.lexically_normal().parent_path()) own.push_back(part.string());
+    own.push_back(path.stem().string());
+  }
+  std::map<std::string, fs::path> files;
+  for (std::size_t k = 0; k < paths.size(); ++k) {
+    const auto [there, is_new] = files.try_emplace(label_of(parts[k], parts), paths[k]);
+    if (is_new) continue;
+    throw StudyError("{}: is named twice ({} is it too): give each run once", paths[k],
+                     there->second);
+  }
+  return files;
+}
+
+/// The runs of one estimator by their names, each with the truth of its name or that of all.
+JudgedFiles pair_by_words(const std::vector<fs::path>& estimates,
+                          const std::vector<fs::path>& truths, const std::string& cell) {
+  JudgedFiles judged;
+  EstimatorFiles& one = judged.cells.emplace_back(EstimatorFiles{cell, {}});
+  const auto truth_of = by_words(truths);
+  for (const auto& [name, file] : by_words(estimates)) {
+    const auto truth = truth_of.size() == 1 ? truth_of.begin() : truth_of.find(name);
+    if (!truths.empty() && truth == truth_of.end()) {
+      throw StudyError(
+          "{}: no truth is called {} (runs without numbers are paired by the words in which their "
+          "paths differ): call files or folders of --truth like those of the estimates",
+          file, excerpt(name));
+    }
+    judged.runs.push_back(judged.runs.size());
+    judged.names.push_back(name);
+    judged.truth.push_back(truths.empty() ? file : truth->second);
+    one.of_run.push_back(file);
+  }
+  if (truth_of.size() <= 1 || truth_of.size() == judged.runs.size()) return judged;
+  throw StudyError(
+      "--truth: {} truths for {} runs (a failed run is a result): give a failed run the file that "
+      "it wrote, the header at least; for fewer runs name only their truths",
+      truth_of.size(), judged.runs.size());
 }
 
 /// The names of runs whose numbers are not consecutive, in the order in which they are numbered.
@@ -190,6 +248,10 @@ JudgedFiles pair_files(const std::vector<std::string>& estimates,
                        const std::optional<std::string>& cell) {
   std::vector<NumberedFile> files =
       numbered_files(std::vector<fs::path>(estimates.begin(), estimates.end()));
+  if (cell && files.size() > 1 && !have_own_numbers(files)) {
+    check_label(*cell);
+    return pair_by_words({estimates.begin(), estimates.end()}, all_truths(truths), *cell);
+  }
   const bool is_unnumbered = files.size() == 1 && files.front().run.empty();
   if (is_unnumbered) files.front().run = {0};
   const std::map<std::string, FilesByRun> cells = cells_of(files, cell);
@@ -207,12 +269,13 @@ JudgedFiles pair_files(const std::vector<std::string>& estimates,
     judged.runs.push_back(has_numbers ? run[0] : judged.runs.size());
     judged.truth.push_back(file);
   }
+  const std::string remedy =
+      "estimators are paired by run: judge the same runs of all, or give --cell NAME if all are "
+      "runs "
+      "of one estimator";
   for (const auto& [label, of_run] : cells) {
-    require_same_runs(first, of_run, "estimate in cell " + label,
-                      "estimators are paired by run: "
-                      "judge the same runs of all");
-    require_same_runs(of_run, first, "estimate in cell " + cells.begin()->first,
-                      "estimators are paired by run: judge the same runs of all");
+    require_same_runs(first, of_run, "estimate in cell " + label, remedy);
+    require_same_runs(of_run, first, "estimate in cell " + cells.begin()->first, remedy);
     EstimatorFiles& one = judged.cells.emplace_back(EstimatorFiles{label, {}});
     for (const auto& [run, file] : of_run) one.of_run.push_back(file);
   }
@@ -256,8 +319,9 @@ std::string note_on_names(const JudgedFiles& files) {
   std::string names = joined(std::span(files.names).first(shown));
   if (shown < files.names.size()) names += ", ... to " + files.names.back();
   return formatted(
-      "the numbers in the names of the runs are not consecutive ({}): in this order, the runs are "
-      "called {} to {}",
+      "the names of the runs are no consecutive numbers ({}): in this order, the runs are called "
+      "{} "
+      "to {}",
       names, files.runs.front(), files.runs.back());
 }
 

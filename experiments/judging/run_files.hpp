@@ -18,8 +18,8 @@ struct EstimatorFiles {
 /// Estimates and truths, matched by run.
 struct JudgedFiles {
   std::vector<std::uint64_t> runs;  ///< numbers of the runs, consecutive and increasing
-  /// {run} numbers in the names of the files, e.g. seeds, if they are not consecutive and the runs
-  /// are numbered from 0 instead; else empty.
+  /// {run} names of runs that are numbered from 0: numbers in the names of the files that are not
+  /// consecutive, e.g. seeds, or the words in which the paths differ; else empty.
   std::vector<std::string> names;
   std::vector<std::filesystem::path> truth;  ///< {run} files of the truth
   std::vector<EstimatorFiles> cells;         ///< files of the cells, ordered by label
@@ -27,8 +27,8 @@ struct JudgedFiles {
 
 /// Pairs estimates with truths by the numbers in their names (montecarta judge --help). `truths`
 /// are files, folders that `export` made, or their folder truth/; without any, the estimates stand
-/// in their place. `cell`, if given, is the label of all estimates. Throws StudyError if a run
-/// occurs twice or is missing.
+/// in their place. `cell`, if given, is the label of all estimates, which may have names instead of
+/// numbers then. Throws StudyError if a run occurs twice or is missing.
 JudgedFiles pair_files(const std::vector<std::string>& estimates,
                        const std::vector<std::string>& truths,
                        const std::optional<std::string>& cell);

@@ -120,8 +120,10 @@ StateShape shape_of_errors(const Names& state, const std::string& place) {
 
 StateShape shape_of(const Names& state, const std::string& place) {
   if (state.empty()) {
-    throw StudyError("{}: no state (the header has times and covariances alone): add e.g. {}",
-                     place, joined(kPoseColumns, ","));
+    throw StudyError(
+        "{}: no state (the header has times, innovations and covariances alone): add e.g. {}, or "
+        "judge innovations alone by --innovations",
+        place, joined(kPoseColumns, ","));
   }
   if (is_same_set(usual_names(state), kPoseColumns)) {
     return {StateKind::pose, kPoseColumns, {"x", "y", "heading"}, {"m", "m", "rad"}};

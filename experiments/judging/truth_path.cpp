@@ -4,6 +4,7 @@
 #include "engine/errors.hpp"
 #include "engine/formatted.hpp"
 #include "engine/numbers/angle.hpp"
+#include "engine/text/number_text.hpp"
 #include "experiments/judging/scan_clock.hpp"
 #include "experiments/text/words.hpp"
 
@@ -118,9 +119,32 @@ std::optional<TrueState> TruthPath::interpolated(double time, const std::string&
   return found;
 }
 
+/// Adds how far the truth is from a straight line at the time of a position, by its curvature
+/// around there: rows at distance h leave s (1 - s) h^2 / 2 times the acceleration, s of the way.
+void TruthPath::add_bend(const StateRows& estimates, std::size_t row, TruthUse& use) const {
+  if (rows_.shape.kind == StateKind::vector || estimates.covariance.empty()) return;
+  const Eigen::Index n = rows_.shape.kind == StateKind::pose ? 2 : 3;
+  const double time = estimates.time[row];
+  ++use.interpolated_positions;
+  use.claimed_squares += std::max(0.0, estimates.covariance[row].diagonal().head(n).sum());
+  const auto after = std::ranges::lower_bound(rows_.time, time);
+  const auto right = static_cast<std::size_t>(after - rows_.time.begin());
+  if (right < 2 || right + 1 >= rows_.time.size()) return;
+  const auto spacing = [&](std::size_t k) { return rows_.time[k] - rows_.time[k - 1]; };
+  constexpr double kUneven = 1.5;
+  const auto [least, most] = std::minmax({spacing(right - 1), spacing(right), spacing(right + 1)});
+  if (most > kUneven * least) return;
+  const auto place = [&](std::size_t k) { return rows_.state[k].head(n); };
+  const double share = (time - rows_.time[right - 1]) / spacing(right);
+  const Eigen::VectorXd curve =
+      place(right - 2) - place(right - 1) - place(right) + place(right + 1);  // twice h^2 times it
+  use.bend_squares += (0.25 * share * (1.0 - share) * curve).squaredNorm();
+}
+
 std::vector<std::optional<TrueState>> TruthPath::at(const StateRows& estimates,
                                                     const std::filesystem::path& path,
                                                     TruthUse& use) const {
+  require_common_time(estimates, path);
   std::vector<std::optional<TrueState>> found;
   std::optional<std::size_t> used;
   for (std::size_t k = 0; k < estimates.time.size(); ++k) {
@@ -129,6 +153,7 @@ std::vector<std::optional<TrueState>> TruthPath::at(const StateRows& estimates,
         formatted("{}: time {} s", place_of_row(path, estimates, k), to_text(time));
     if (match_.interpolate) {
       found.push_back(interpolated(time, estimate, use));
+      if (found.back()) add_bend(estimates, k, use);
       continue;
     }
     const std::size_t row = row_near(time, estimate);
@@ -148,12 +173,38 @@ std::vector<std::optional<TrueState>> TruthPath::at(const StateRows& estimates,
     found.emplace_back(in_row(row));
   }
   const bool has_any = std::ranges::any_of(found, [](const auto& one) { return one.has_value(); });
-  if (has_any || found.empty()) return found;
+  if (!has_any && !found.empty()) refuse_times(estimates, path);
+  return found;
+}
+
+/// Throws StudyError if all estimates are before the truth, or all behind it.
+void TruthPath::require_common_time(const StateRows& estimates,
+                                    const std::filesystem::path& path) const {
+  if (estimates.time.empty()) return;
+  const bool is_apart = estimates.time.back() < rows_.time.front() - match_.tolerance ||
+                        estimates.time.front() > rows_.time.back() + match_.tolerance;
+  if (is_apart) refuse_times(estimates, path);
+}
+
+void TruthPath::refuse_times(const StateRows& estimates, const std::filesystem::path& path) const {
   throw StudyError(
       "{}: no estimate has a {} in {} ({} to {} s here, {} to {} s there): give both the same "
       "clock",
       path, name_of_other(match_.is_pair), path_, to_text(estimates.time.front()),
       to_text(estimates.time.back()), to_text(rows_.time.front()), to_text(rows_.time.back()));
+}
+
+/// A note on a truth that is no straight line between its rows; empty if it nearly is.
+std::string TruthUse::note_on_bend(const std::string& other) const {
+  constexpr double kLeastShare = 0.02;  // of the claimed squares, which it adds to the errors
+  if (!(bend_squares > kLeastShare * claimed_squares)) return "";
+  const auto n = static_cast<double>(interpolated_positions);
+  return formatted(
+      "the {} bends by {} m between its rows (root mean square; {} m are claimed for positions): "
+      "straight lines between them err so much, and this counts as the estimate's error: give it "
+      "at "
+      "the times of the estimates, or more densely",
+      other, compact(std::sqrt(bend_squares / n)), compact(std::sqrt(claimed_squares / n)));
 }
 
 std::vector<std::string> TruthUse::notes(bool is_pair) const {
@@ -177,6 +228,7 @@ std::vector<std::string> TruthUse::notes(bool is_pair) const {
                   "error there counts as the estimate's",
                   other, to_text(longest_crossed)));
   }
+  if (const std::string bend = note_on_bend(other); !bend.empty()) all.push_back(bend);
   if (interpolates_covariance) {
     all.push_back(formatted(
         "between its rows the errors of the {} were taken as those of its neighbours (they change "

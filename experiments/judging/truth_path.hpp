@@ -34,9 +34,13 @@ struct TruthUse {
   bool interpolates_covariance = false;  ///< whether that of the truth was taken between its rows
   std::uint64_t outside = 0;             ///< number of estimates left out before or after a truth
   std::string first_outside = {};        ///< the first such estimate: file and time
+  double bend_squares = 0.0;  ///< [m2] sum of squares of the truth's bend at interpolated positions
+  double claimed_squares = 0.0;  ///< [m2] sum of variances that estimates claim for positions there
+  std::uint64_t interpolated_positions = 0;
 
   /// Sentences on what is not as usual. `is_pair` is that of TimeMatch.
   std::vector<std::string> notes(bool is_pair) const;
+  std::string note_on_bend(const std::string& other) const;
 };
 
 /// The truth at the time of an estimate.
@@ -64,7 +68,12 @@ class TruthPath {
   TrueState in_row(std::size_t row) const;
   std::optional<TrueState> interpolated(double time, const std::string& estimate,
                                         TruthUse& use) const;
+  void add_bend(const StateRows& estimates, std::size_t row, TruthUse& use) const;
   std::size_t row_near(double time, const std::string& estimate) const;
+  void require_common_time(const StateRows& estimates, const std::filesystem::path& path) const;
+  /// Throws StudyError that says that the times of both files are of different clocks.
+  [[noreturn]] void refuse_times(const StateRows& estimates,
+                                 const std::filesystem::path& path) const;
 
   StateRows rows_;
   std::filesystem::path path_;

@@ -303,8 +303,8 @@ def judge_estimates(estimates: ArrayLike, truths: ArrayLike, covariances: ArrayL
     covariances : array_like, {run, scan, d, d}, or {scan, d, d} if all runs have the same
         Covariances [products of the units of the components], for poses position first.
     error : str, optional
-        "world", "body", "right-invariant" or, in space, "world-body": the error of the covariance
-        of a pose (`montecarta judge --help`). Needed for poses.
+        "world", "body", "right-invariant", "left-invariant" or, in space, "world-body": the error
+        of the covariance of a pose (`montecarta judge --help`). Needed for poses.
     names : sequence of str, {column}, or a str with commas
         Columns of the state. ["x_m", "y_m", "z_m", "qx", "qy", "qz", "qw"] is a pose in space; its
         covariance has d = 6 components.

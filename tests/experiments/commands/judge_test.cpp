@@ -184,6 +184,12 @@ TEST_F(Judge, PosesInSpaceAreJudgedAndCompared) {
   std::vector<std::string> more = {"--truth",         "truth.csv", "--error",
                                    "right-invariant", "-o",        "mine.h5"};
   EXPECT_THAT(judge(files, more).err, HasSubstr("--interpolate"));
+  std::vector<std::string> with_number = more, with_gap = more;
+  with_number.insert(with_number.end(), {"--interpolate", "5"});
+  with_gap.insert(with_gap.end(), {"--longest-gap", "1e3"});
+  EXPECT_THAT(judge(files, with_number).err, HasSubstr("--longest-gap 5"));
+  EXPECT_EQ(judge(files, with_gap).code, 0) << "it interpolates";
+  std::filesystem::remove(folder_ / "mine.h5");
   more.push_back("--interpolate");
   const Called called = judge(files, more);
   ASSERT_EQ(called.code, 0) << called.err;

@@ -193,8 +193,8 @@ class Layouts(Estimates):
 
     def test_square_declares_triangle_and_order(self):
         moved = np.roll(WHOLE, 3, (0, 1))
-        self.expect(SQUARE + row(1.5, POSE, moved[LOWER]), WHOLE, "SQUARE", "--error body",
-                    "--anchor yaw")
+        self.expect(SQUARE + row(1.5, POSE, moved[LOWER]), WHOLE, "SQUARE",
+                    "--error left-invariant", "--anchor yaw")
         self.expect_refusal(SQUARE.replace("gaussian_se3", "ensemble_se3"), "ensemble_se3")
         self.expect_refusal(SQUARE.replace("TANGENT_ORDER", "ORDER") + row(
             1.5, POSE, moved[LOWER]), "TANGENT_ORDER")
@@ -372,14 +372,27 @@ class Arrays(Estimates):
         with self.assertRaisesRegex(ConversionError, "no pose in space"):
             self.run_arrays("a.npz", "estimate", order="rotation-first", **self.arrays)
 
-    def test_may_be_errors_whose_truth_is_zero(self):
+    def test_may_have_names_in_one_text(self):
+        rows = self.run_arrays("a.npz", "estimate", **self.arrays | {"names": "x_m, v_mps"})
+        self.assertEqual(rows["run_0/estimate.csv"][0][:16], "time_s,x_m,v_mps")
+
+    def test_may_be_errors_which_need_no_truth(self):
         arrays = {"error": self.mean, "covariance": self.P, "names": self.arrays["names"]}
         rows = self.run_arrays("a.npz", "estimate", **arrays)["run_1/estimate.csv"]
         self.assertEqual(rows[0][:28], "time_s,error_x_m,error_v_mps")
         self.assertEqual(rows[1][:6], "0,6,7,")
         self.assertIn("no time", self.said)
-        self.assertEqual(self.run_arrays("a.npz", "truth", **arrays), {
-            "truth.csv": ["time_s,error_x_m,error_v_mps", "0,0,0", "1,0,0", "2,0,0"]})
+        self.expect_refused(estimates, ["needs no truth"], kind="truth",
+                            files=[self.path("a.npz")], output=self.path("refused"))
+
+    def test_are_refused_if_their_damage_ends_the_reader(self):
+        path = self.path("a.mat")
+        savemat(path, {"mean": np.ones((2, 3, 2))})
+        with open(path, "r+b") as file:
+            file.seek(184)  # the type of the numbers
+            file.write(b"\xff")
+        self.expect_refused(estimates, ["a.mat: is damaged"], kind="estimate", files=[path],
+                            output=self.path("refused"))
 
     def test_are_refused_if_they_are_incomplete(self):
         def refuse(*pieces, kind="estimate", **changed):

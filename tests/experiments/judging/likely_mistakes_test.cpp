@@ -65,6 +65,17 @@ TEST(LikelyMistakes, AreEstimatesThatEqualTheTruth) {
   EXPECT_THAT(notes_on(rows_with(planar(0.01), 1.0)), HasSubstr("10 of 10 rows"));
 }
 
+TEST(LikelyMistakes, AreRowsThatWereNeverWritten) {
+  StateRows rows = rows_with(planar(0.01));
+  for (const std::size_t k : {0, 9}) {  // the first may be known exactly
+    rows.state[k] = rows_with(planar(0.01), 1.0).state[k];
+    rows.covariance[k].setZero();
+  }
+  EXPECT_THAT(notes_on(rows),
+              AllOf(HasSubstr("all 0 in 1 of 10 rows, the first in ekf/run_0.csv:11"),
+                    Not(HasSubstr("copy"))));
+}
+
 TEST(LikelyMistakes, AreQuaternionsWithWFirst) {
   const Eigen::VectorXd variances = planar(0.01);
   const StateRows swapped = rows_with(variances, 0.0, {0.8, 0.0, 0.0, 0.6});

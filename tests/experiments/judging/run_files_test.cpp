@@ -114,6 +114,25 @@ TEST(RunFiles, NameTheirEstimator) {
               ElementsAre("ekf", "pf"));
 }
 
+TEST(RunFiles, OfOneEstimatorMayHaveNames) {
+  const Paths runs = {"e/V1_01_easy/est.csv", "e/MH_01_easy/est.csv", "e/MH_04_hard/est.csv"};
+  const Paths truths = {"gt/MH_04_hard.csv", "gt/MH_01_easy.csv", "gt/V1_01_easy.csv"};
+  const JudgedFiles files = pair_files(runs, truths, "vio");
+  EXPECT_THAT(files.names, ElementsAre("MH_01_easy", "MH_04_hard", "V1_01_easy"));
+  EXPECT_THAT(files.runs, ElementsAre(0, 1, 2));
+  EXPECT_THAT(files.cells[0].of_run, ElementsAre(runs[1], runs[2], runs[0]));
+  EXPECT_THAT(files.truth, ElementsAre(truths[1], truths[0], truths[2]));
+  EXPECT_THAT(pair_files(runs, {"t.csv"}, "vio").truth, ElementsAre("t.csv", "t.csv", "t.csv"));
+  EXPECT_THAT(refusal_of(runs, truths), HasSubstr("--cell NAME"));
+  const auto refusal = [](const Paths& estimates, const Paths& of) {
+    return complaint_of([&] { pair_files(estimates, of, "vio"); });
+  };
+  EXPECT_THAT(refusal(runs, {"gt/MH_04_hard.csv", "gt/MH_02_easy.csv", "gt/V1_01_easy.csv"}),
+              HasSubstr("e/MH_01_easy/est.csv: no truth is called MH_01_easy"));
+  EXPECT_THAT(refusal({runs[0], runs[1]}, truths), HasSubstr("3 truths for 2 runs"));
+  EXPECT_THAT(refusal({"a.csv", "b.csv", "./a.csv"}, {"t.csv"}), HasSubstr("is named twice"));
+}
+
 TEST(RunFiles, ThatDoNotFitAreNamed) {
   EXPECT_THAT(refusal_of({"r/run_3/e.csv"}, kTruths),
               HasSubstr("t/run_4/truth.csv: run 4 has no estimate"));

@@ -3,6 +3,7 @@
 #include "experiments/judging/innovation_rows.hpp"
 #include "experiments/judging/read_rows.hpp"
 #include "experiments/judging/truth_path.hpp"
+#include "experiments/text/words.hpp"
 #include "tests/doubles/complaint.hpp"
 #include "tests/doubles/matchers.hpp"
 #include "tests/doubles/scratch_folder.hpp"
@@ -76,7 +77,9 @@ TEST_F(StateFiles, AreRefusedWithFileLineAndRemedy) {
   EXPECT_EQ(complaint(kPoseHeader), "nothing") << "a run that gave no estimates";
   EXPECT_THAT(complaint("0.5,1,2,3\n"), AllOf(HasSubstr(file + ":1: '0.5'"), HasSubstr("time_s")));
   EXPECT_THAT(complaint(kPoseHeader + "0.5,1,2\n"), HasSubstr(":2: 3 fields"));
-  EXPECT_THAT(complaint(kPoseHeader + "0.5,nan,2,3,11,12,22,13,23,33\n"), HasSubstr(":2: 'nan'"));
+  EXPECT_THAT(complaint(kPoseHeader + "0.5,nan,2,3,11,12,22,13,23,33\n"),
+              AllOf(HasSubstr(":2: 'nan'"), HasSubstr("leave out rows")));
+  EXPECT_THAT(complaint(kPoseHeader + "0.5,,2,3,11,12,22,13,23,33\n"), HasSubstr("leave out rows"));
   EXPECT_THAT(complaint(kPoseHeader + "0.5,1,2,3,11,inf,22,13,23,33\n"), HasSubstr(":2: 'inf'"));
   EXPECT_THAT(complaint(kPoseHeader + "0.5,1,\x01\xff,3,11,12,22,13,23,33\n"), HasSubstr(":2: '"));
   EXPECT_THAT(complaint(kPoseHeader + "0.5,1,2,3,11,12,22,13,23,33"), HasSubstr(":2: the last"));
@@ -92,7 +95,8 @@ TEST_F(StateFiles, AreRefusedWithFileLineAndRemedy) {
 }
 
 TEST_F(StateFiles, NameTheElementThatIsMissingAsTheFileNamesElements) {
-  EXPECT_THAT(complaint("time_s,a,b,cov_0_0,cov_0_1\n"), HasSubstr("no cov_1_1"));
+  EXPECT_THAT(complaint("time_s,a,b,cov_0_0,cov_0_1\n"),
+              AllOf(HasSubstr("no cov_1_1"), HasSubstr("the components a,b;")));
   EXPECT_THAT(complaint("time_s,a,b,cov_a_a,cov_a_b\n"), HasSubstr("no cov_b_b"));
   EXPECT_THAT(complaint("time_s,a,b,cov_0_0,cov_0_1,cov_11\n"),
               AllOf(HasSubstr("'cov_11' is no element"), HasSubstr("is called cov_1_1")));
@@ -180,6 +184,7 @@ TEST_F(StateFiles, WithOtherSeparatorsAreNamed) {
               AllOf(HasSubstr(":1: semicolons"), HasSubstr("decimal points")));
   EXPECT_THAT(complaint("time_s\tx_m\tcov_0_0\n"), HasSubstr(":1: tabs"));
   EXPECT_THAT(complaint("time_s x_m cov_0_0\n"), HasSubstr(":1: blanks"));
+  EXPECT_THAT(complaint("time_s|x_m|cov_0_0\n"), HasSubstr(":1: vertical bars"));
   EXPECT_THAT(complaint("\"time_s\",\"x_m\"\n"), HasSubstr(":1: names in quotes"));
   const std::string header = "time_s,x_m,cov_0_0\n";
   EXPECT_THAT(complaint(header + "0.5;1;1\n"), HasSubstr(":2: semicolons"));
@@ -224,6 +229,28 @@ TEST_F(StateFiles, HaveTruthsAtTheTimesOfEstimatesOrBetween) {
   EXPECT_THROW(read_truth(written("time_s,b_m\n0,1\n"), shape), StudyError);
 }
 
+// A circle of 10 m with 3 m/s, of which rows at distance h lie v^2 h^2 / (8 r) from the chord.
+TEST_F(StateFiles, HaveNoStraightTruthWhereItBends) {
+  const StateShape shape{
+      StateKind::pose, {"x_m", "y_m", "heading_rad"}, {"x", "y", "heading"}, {"m", "m", "rad"}};
+  const auto notes_at = [&](double spacing) {
+    StateRows truth{.shape = shape}, rows{.shape = shape};
+    for (int k = 0; k < 20; ++k) {
+      const double angle = 0.3 * spacing * k;
+      truth.time.push_back(spacing * k);
+      truth.state.emplace_back(Eigen::Vector3d(10 * std::cos(angle), 10 * std::sin(angle), 0));
+      rows.time.push_back(spacing * (k + 0.5));
+      rows.covariance.emplace_back(0.01 * Eigen::Matrix3d::Identity());
+    }
+    TruthUse use;
+    TruthPath(truth, "truth.csv", {.interpolate = true}).at(rows, "est.csv", use);
+    use.outside = 0;
+    return joined(use.notes(false), "\n");
+  };
+  EXPECT_THAT(notes_at(1.0), HasSubstr("bends by 0.10"));  // 0.1125, of 17 of 19 positions
+  EXPECT_EQ(notes_at(0.2), "");
+}
+
 TEST_F(StateFiles, HaveNoTruthInAGapNorOutsideOfIt) {
   const StateShape shape{StateKind::vector, {"b_m"}, {"b"}, {"m"}};
   std::string text = "time_s,b_m\n";
@@ -252,6 +279,11 @@ TEST_F(StateFiles, HaveNoTruthInAGapNorOutsideOfIt) {
                     .at({.shape = shape, .time = later}, "est.csv", use);
               }),
               HasSubstr("no estimate has a truth in truth.csv (40 to 41 s here, 0 to 32 s there)"));
+  EXPECT_THAT(
+      complaint_of([&] {
+        TruthPath(rows, "truth.csv", {}).at({.shape = shape, .time = later}, "est.csv", use);
+      }),
+      HasSubstr("give both the same clock"));
 }
 
 class InnovationFiles : public testing::Test {

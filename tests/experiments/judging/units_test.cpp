@@ -65,6 +65,14 @@ TEST(AngleUnits, OfHeadingsInDegreesAreRefused) {
   EXPECT_THAT(note_on_angles(vector, "a.csv"), HasSubstr("is it in degrees"));
 }
 
+TEST(AngleUnits, OfSmallHeadingsInDegreesAreNoted) {
+  const auto drives_nearly_straight = [](int k) { return 0.15 * std::sin(0.03 * k); };
+  const StateRows rows = driven(drives_nearly_straight, in_degrees);
+  EXPECT_EQ(on_angles(rows), "nothing");
+  EXPECT_THAT(note_on_angles(rows, "a.csv"), HasSubstr("is it in degrees"));
+  EXPECT_EQ(note_on_angles(driven(drives_nearly_straight, unwrapped), "a.csv"), "");
+}
+
 TEST(AngleUnits, OfHeadingsThatCountTurnsAreRadians) {
   const auto turns = [](int k) { return 0.5 * k; };
   const auto jumps_once = [](int k) { return 0.3 * k + (k > 100 ? 9.0 : 0.0); };
