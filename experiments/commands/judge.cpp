@@ -75,7 +75,7 @@ JudgingOptions judging_options(const Arguments& arguments) {
   options.equal_times = equal_times_of(arguments);
   if (const auto name = arguments.text("anchor")) options.anchor = anchor_named(*name);
   options.adds_truth_covariance = arguments.has("truth-cov");
-  if (const auto gate = arguments.text("gate")) options.gate.emplace(*gate);
+  if (const auto gates = arguments.text("gate")) options.gates.emplace(*gates);
   if (const auto windows = arguments.text("windows")) options.windows = windows_in(*windows);
   options.are_innovations = arguments.has("innovations");
   if (const auto names = arguments.text("components")) options.components = split(*names, ',');
@@ -139,7 +139,7 @@ std::unique_ptr<EstimateSource> innovations_of(const Arguments& arguments,
       "interpolate", "longest-gap", "components", "keep",   "tolerance"};
   refuse_options(arguments, kOfStates, "--innovations (innovations need no truth and no state)");
   return std::make_unique<InnovationFiles>(
-      pair_files(arguments.operands(), {}, arguments.text("cell")), options.gate);
+      pair_files(arguments.operands(), {}, arguments.text("cell")), options.gates);
 }
 
 /// The files of two estimators, the second of which is in place of the truth. Fills `pair`.
@@ -168,6 +168,14 @@ std::unique_ptr<EstimateSource> source_of(const Arguments& arguments, JudgingOpt
   const std::vector<std::string>& operands = arguments.operands();
   if (h5::is_hdf5(operands.front())) return arrays_of(arguments);
   const std::string ending = std::filesystem::path(operands.front()).extension().string();
+  if (ending == ".npy") {
+    throw StudyError(
+        "{}: a NumPy array (errors and covariances are read from one HDF5 file): call "
+        "montecarta.judge(errors, covariances) in Python, or write the file by h5py: "
+        "f = h5py.File(\"a.h5\", \"w\"); f[\"error\"] = errors; f[\"covariance\"] = covariances; "
+        "f.close()",
+        operands.front());
+  }
   if (ending == ".h5" || ending == ".hdf5" || ending == ".mat" || ending == ".npz") {
     throw StudyError(
         "{}: is there no such file, or no HDF5 file (arrays are in one): give its name; convert "
@@ -179,7 +187,7 @@ std::unique_ptr<EstimateSource> source_of(const Arguments& arguments, JudgingOpt
     throw StudyError("--names: needs an HDF5 file (a CSV file has a header): leave it out");
   }
   if (arguments.has("innovations")) return innovations_of(arguments, options);
-  if (options.gate) {
+  if (options.gates) {
     throw StudyError(
         "--gate: needs --innovations (a gate is judged by each of them): leave it out");
   }
