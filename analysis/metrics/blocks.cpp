@@ -52,7 +52,7 @@ TextTable block_table(const StudyAnalysis& study) {
       table.add({{"cell", cell.label, Align::left},
                  {"block", block.name, Align::left},
                  {"verdict", in_words(block.verdict), Align::left, tone_of(block.verdict)},
-                 {"NEES ratio [" + level_text(study.level) + "]", ratio_text_of(block.verdict)}});
+                 {ratio_heading(study), ratio_text_of(block.verdict)}});
     }
   }
   return table;

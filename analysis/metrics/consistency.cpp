@@ -96,7 +96,7 @@ std::vector<Band> bands(const StudyAnalysis& study, std::size_t dimension) {
 
 /// Label of a panel: "NEES ratio of the pose".
 std::string label_of(const StudyAnalysis& study, ErrorBlock block) {
-  return "NEES ratio of the " +
+  return std::string(study.imported.name_of_ratio()) + " of the " +
          (block == ErrorBlock::pose ? study.imported.name_of_whole() : name_of(block));
 }
 

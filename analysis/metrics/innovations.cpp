@@ -43,11 +43,15 @@ class InnovationsOverRuns final : public MergedSums<InnovationsOverRuns> {
   }
   void put(CellAnalysis& cell) override {
     if (innovations_.empty()) return;
-    Innovations found =
-        innovations_.result(criteria_->times, criteria_->level_of_each(), criteria_->within);
+    Innovations found = innovations_.result(criteria_->times, criteria_->level_of_each(),
+                                            criteria_->within, cell.find<GateScale>());
     if (!has_common_scans_) {
       found.average.clear();
       found.bounds.clear();
+    }
+    const auto* on_white = cell.find<VerdictOnWhite>();
+    if (on_white != nullptr && found.whiteness() == Whiteness::white) {
+      cell.verdict = on_white->verdict;
     }
     cell.findings.put(std::move(found));
   }
@@ -109,7 +113,9 @@ std::vector<TextTable::Entry> innovation_row(const CellAnalysis& cell, double le
   std::vector<TextTable::Entry> row;
   const Innovations* found = cell.find<Innovations>();
   if (found == nullptr) return row;
-  add_entries(kInnovationQuantities, *found, level, row);
+  // Only innovations alone have a level of their own.
+  add_entries(kInnovationQuantities, *found, found->judges_size() ? found->verdict.level : level,
+              row);
   const std::size_t lag = found->worst_lag;
   const auto at_worst = [&](const std::vector<double>& values) {
     return lag == 0 ? "-" : readable(values[lag - 1]);

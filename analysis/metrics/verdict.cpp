@@ -6,6 +6,7 @@
 #include "analysis/study/metric.hpp"
 #include "analysis/study/study_analysis.hpp"
 #include "analysis/study/verdict_table.hpp"
+#include "analysis/verdict/innovations.hpp"
 #include "analysis/verdict/interim_analysis.hpp"
 #include "analysis/verdict/sentence.hpp"
 #include "analysis/verdict/whole_error.hpp"
@@ -37,22 +38,41 @@ class VerdictOverRuns final : public MergedSums<VerdictOverRuns> {
     cell.verdict.level = level;
     cell.verdict.within = criteria_->within;
     if (!sums_) return;
-    const InterimAnalysis analysis{.level = criteria_->level,
+    const InterimAnalysis analysis{.level = criteria_->level_of_each(),
                                    .within = criteria_->within,
                                    .runs_at_analyses = criteria_->runs_at_analyses,
-                                   .share_of_runs = criteria_->share_of_runs};
+                                   .share_of_runs = criteria_->share_of_runs,
+                                   .gate = cell.find<GateScale>()};
     cell.verdict =
         judge(*sums_, {criteria_->components, criteria_->times}, analysis, ended, cell.complete);
     if (criteria_->by_upper_bounds) take_for_upper_bounds(cell.verdict);
-    cell.verdict.is_of_innovations = criteria_->innovation_components > 0;
     const NeesSeries& series = cell.nees.front().series;
     cell.verdict.samples = series.samples;
     cell.verdict.unusable = series.unusable;
     cell.verdict.missing = criteria_->has_own_scans ? 0 : series.missing;
+    if (criteria_->innovation_components == 0) return;
+    cell.verdict.is_of_innovations = true;
+    put_verdict_on_white(level, cell);
   }
   static constexpr auto parts() { return std::tuple(added(&VerdictOverRuns::sums_)); }
 
  private:
+  void put_verdict_on_white(double level, CellAnalysis& cell) const {
+    const ErrorNames names{criteria_->components, criteria_->times};
+    std::vector<FamilyTest> families = sums_->white_families(level, names);
+    if (families.empty()) return;
+    if (const auto* gate = cell.find<GateScale>()) gate->put_factors(families);
+    VerdictOnWhite white{cell.verdict};
+    const Verdict found =
+        judge(std::move(families), level, criteria_->within, cell.complete, cell.verdict.beside);
+    white.verdict.families = found.families;
+    white.verdict.answer = found.answer;
+    white.verdict.of_tests = found.of_tests;
+    white.verdict.is_refused = found.is_refused;
+    take_for_white_drives(cell.verdict, white.verdict);
+    cell.findings.put(std::move(white));
+  }
+
   const RunCriteria* criteria_;
   std::optional<WholeError> sums_;
 };

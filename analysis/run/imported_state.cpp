@@ -19,13 +19,16 @@ std::vector<std::string> words_in(const std::string& list) {
   return words;
 }
 
-/// The value of a setting of a cell; empty if it has none of this name.
+}  // namespace
+
 std::string setting_of(const StoredCell& cell, const char* name) {
   const auto pair = std::ranges::find(cell.settings, name, &TextPairs::value_type::first);
   return pair == cell.settings.end() ? std::string() : pair->second;
 }
 
-}  // namespace
+const char* ImportedState::name_of_ratio() const {
+  return state == kInnovationsAlone ? "NIS ratio" : "NEES ratio";
+}
 
 std::string ImportedState::name_of_whole() const {
   if (state == kInnovationsAlone) return "innovation";
@@ -38,7 +41,6 @@ ImportedState imported_state(const StoredCell& cell) {
   ImportedState found;
   const auto setting = [&](const char* name) { return setting_of(cell, name); };
   if (setting("state") == kInnovationsAlone) found.state = kInnovationsAlone;
-  found.gate = setting("gate");
   if (!cell.has("error")) {
     if (found.is_imported()) found.components = found.units = {};
     return found;

@@ -24,7 +24,6 @@ struct ImportedState {
   std::string convention;  ///< name of the convention of the error, among kErrorConventions
   std::string windows;  ///< [s] lengths of the windows whose increments are judged; empty if none
   bool bounds_increments = false;  ///< whether covariances of increments are only bounds
-  std::string gate;   ///< limit of the NIS of innovations that are left; empty if there is none
   std::string moved;  ///< what was moved of the truths onto the first estimates; empty if nothing
   bool adds_truth_covariance = false;  ///< whether covariances of the truths were added
   /// The two estimators whose difference is judged, by the largest covariance that it can have;
@@ -38,6 +37,8 @@ struct ImportedState {
   bool is_imported() const { return !state.empty(); }
   /// Name of the whole whose error is judged: "pose", "state", "innovation", ...
   std::string name_of_whole() const;
+  /// Name of the ratio of squared errors to the expected ones: "NEES ratio", or "NIS ratio".
+  const char* name_of_ratio() const;
 };
 
 /// Components of a state that are also judged by themselves.
@@ -50,6 +51,9 @@ struct StateBlock {
 /// state: position x, y, z [m]; rotation rx, ry, rz or heading [rad]; velocity vx, vy, vz [mps].
 std::vector<StateBlock> blocks_of(std::span<const std::string> components,
                                   std::span<const std::string> units);
+
+/// The value of a setting of a cell; empty if it has none of this name.
+std::string setting_of(const StoredCell& cell, const char* name);
 
 /// The imported state from the settings of a cell if 'montecarta judge' made the file, else the
 /// pose in the plane.

@@ -4,9 +4,11 @@
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
+#include <boost/math/tools/toms748_solve.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 namespace montecarta::analysis {
 namespace {
@@ -16,6 +18,7 @@ using boost::math::complement;
 using boost::math::quantile;
 
 constexpr double kLeastTail = 1e-17;  // tail of a level that rounding made 1
+constexpr double kLeastTailOfSquares = 1e-300;
 
 }  // namespace
 
@@ -39,7 +42,25 @@ double chi_squared_before_gate(double value, double freedom, double most) {
   const double beyond = chi_squared_tail(most, freedom);
   const double inside = std::min(value, most * (1.0 - kRoundingOfGate));
   const double tail = (chi_squared_tail(inside, freedom) - beyond) / (1.0 - beyond);
+  if (!(tail > kLeastTailOfSquares)) return value;  // no gate so far out leaves anything out
   return chi_squared_beyond(tail, freedom);
+}
+
+double chi_squared_scale_up_to(double most, double freedom, double mean) {
+  // The likelihood is largest where the expectation of a value is `mean`.
+  const auto beyond_mean = [&](double log_scale) {
+    const double scale = std::exp(log_scale), limit = most / scale;
+    return freedom * scale * chi_squared_cdf(limit, freedom + 2.0) /
+               chi_squared_cdf(limit, freedom) -
+           mean;
+  };
+  const double least = std::log(mean / freedom), largest = std::log(1000.0 * most);
+  if (!(beyond_mean(least) < 0.0)) return mean / freedom;
+  if (!(beyond_mean(largest) > 0.0)) return 1000.0 * most;
+  std::uintmax_t steps = 100;
+  const auto [below, above] = boost::math::tools::toms748_solve(
+      beyond_mean, least, largest, boost::math::tools::eps_tolerance<double>(30), steps);
+  return std::exp(0.5 * (below + above));
 }
 
 double t_cdf(double t, double freedom) { return cdf(boost::math::students_t(freedom), t); }

@@ -24,6 +24,10 @@ inline constexpr double kRoundingOfGate = 1e-6;
 /// cannot tell from it.
 double chi_squared_before_gate(double value, double freedom, double most);
 
+/// The scale at which the law of `scale` times a chi-square variable, of values up to `most`, fits
+/// best to values with this mean: the maximum of the likelihood. At most 1000 `most`.
+double chi_squared_scale_up_to(double most, double freedom, double mean);
+
 /// Probability that Student's t is at most `t`.
 double t_cdf(double t, double freedom);
 /// Two-sided p-value of Student's t, or of the normal law if `freedom` is infinite.

@@ -6,7 +6,11 @@
 #include "analysis/study/nees_result.hpp"
 #include "analysis/study/prose.hpp"
 #include "analysis/verdict/convention_hints.hpp"
+#include "analysis/verdict/gate_scale.hpp"
 #include "engine/text/number_text.hpp"
+
+#include <algorithm>
+#include <utility>
 
 namespace montecarta::analysis {
 namespace {
@@ -23,12 +27,23 @@ std::string sentence_on(const std::string& state, const std::string& convention)
                            : "estimate minus truth in the frame of the map";
 }
 
+using Setting = std::pair<std::string, std::string>;
+
 std::vector<std::string> notes_on_innovations(const StudyAnalysis& study) {
   std::vector<std::string> notes;
-  if (study.has_truth)
-    notes.push_back(prose("innovations", "alone", {{"components", components_text(study)}}));
-  if (!study.imported.gate.empty())
-    notes.push_back(prose("innovations", "gate", {{"gate", study.imported.gate}}));
+  if (study.has_truth && !study.cells.empty()) {
+    notes.push_back(prose("innovations", "alone",
+                          {{"components", components_text(study)},
+                           {"each", level_text(study.cells.front().verdict.level)},
+                           {"level", level_text(study.level)}}));
+  }
+  std::string gates;
+  for (const CellAnalysis& cell : study.cells) {
+    const auto gate = std::ranges::find(cell.settings, "gate", &Setting::first);
+    if (gate == cell.settings.end() || cell.find<GateScale>() == nullptr) continue;
+    gates += (gates.empty() ? "" : ", ") + cell.label + " (" + gate->second + ")";
+  }
+  if (!gates.empty()) notes.push_back(prose("innovations", "gate", {{"gates", gates}}));
   return notes;
 }
 

@@ -9,6 +9,7 @@
 #include "analysis/study/cell_sums.hpp"
 #include "analysis/study/efficiency.hpp"
 #include "analysis/study/stored_sums.hpp"
+#include "analysis/verdict/gate_scale.hpp"
 #include "engine/errors.hpp"
 #include "engine/formatted.hpp"
 #include "engine/runs/monte_carlo.hpp"
@@ -75,6 +76,17 @@ std::vector<std::size_t> complete_runs(const ResultFile& file, const StoredCell&
   return complete;
 }
 
+/// The scale of the gate that the innovations of a cell passed; nullopt if there was none. Throws
+/// StudyError if its limits are damaged.
+std::optional<GateScale> gate_of(const ResultFile& file, const StoredCell& cell) {
+  const std::string limits = setting_of(cell, "gate_limits");
+  auto gate = gate_scale_of(limits);
+  if (gate || limits.empty()) return gate;
+  throw StudyError(
+      "{}: cell '{}': damaged (gate_limits has no rows with a limit): judge the innovations again",
+      file.path(), cell.label);
+}
+
 /// A cell whose runs are to be added up.
 struct CellTask {
   CellTask(const ResultFile& file, const StoredCell& stored, std::size_t runs)
@@ -84,6 +96,7 @@ struct CellTask {
     cell.long_name = stored.long_name;
     cell.particles = stored.particles;
     cell.settings = stored.settings;
+    if (auto gate = gate_of(file, stored)) cell.findings.put(std::move(*gate));
     if (!file.has_sums()) complete = complete_runs(file, stored, runs, cell);
   }
 

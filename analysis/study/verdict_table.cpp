@@ -11,6 +11,7 @@
 #include "analysis/study/metric.hpp"
 #include "analysis/study/prose.hpp"
 #include "analysis/verdict/block_errors.hpp"
+#include "analysis/verdict/gate_scale.hpp"
 #include "analysis/verdict/sentence.hpp"
 #include "engine/numbers/angle.hpp"
 #include "engine/text/number_text.hpp"
@@ -60,20 +61,24 @@ const std::vector<ResultNumber<NeesResult>> kNeesQuantities = {
     {"unjudged_runs", "1", samples_of<&NeesSeries::unjudged_runs>, "unjudged runs",
      whole_number_text}};
 
-std::vector<TextTable::Entry> consistency_row(const CellAnalysis& cell, const NeesResult& nees,
-                                              double level) {
+std::vector<TextTable::Entry> consistency_row(const StudyAnalysis& study, const CellAnalysis& cell,
+                                              const NeesResult& nees) {
   const auto d = static_cast<double>(nees.series.dimension);
-  const Interval& average = nees.average_interval;
+  Interval average = {nees.average_interval.lower / d, nees.average_interval.upper / d};
+  double ratio = nees.mean / d;
+  if (const auto* gate = cell.find<GateScale>()) {
+    ratio = gate->factor_of(ratio);
+    average = gate->factor_of(average);
+  }
   std::vector<TextTable::Entry> row = {
       {"cell", cell.label, Align::left},
       {"error", name_of(nees.block), Align::left},
       {"covariance", name_of(nees.moments), Align::left},
       {"ANEES", compact(nees.mean)},
-      {"NEES ratio [" + level_text(level) + "]",
-       with_interval(nees.mean / d, {average.lower / d, average.upper / d})},
+      {ratio_heading(study), with_interval(ratio, average)},
       {"ideal", readable(ideal_nees(cell, nees))},
-      {level_text(level) + " band", band_text(cell, nees.series.dimension, level)}};
-  add_entries(kNeesQuantities, nees, level, row);
+      {level_text(study.level) + " band", band_text(cell, nees.series.dimension, study.level)}};
+  add_entries(kNeesQuantities, nees, study.level, row);
   return row;
 }
 
@@ -114,6 +119,12 @@ Frame::Row numbers_of(const CellAnalysis& cell, const NeesResult& nees, double l
                     {"upper", "1", band.upper}};
   add_numbers(kNeesQuantities, &nees, row);
   return row;
+}
+
+std::string ratio_heading(const StudyAnalysis& study) {
+  const bool is_of_innovations = study.imported.state == kInnovationsAlone && !study.cells.empty();
+  const double level = is_of_innovations ? study.cells.front().verdict.level : study.level;
+  return std::string(study.imported.name_of_ratio()) + " [" + level_text(level) + "]";
 }
 
 std::string ratio_text_of(const Verdict& verdict) {
@@ -176,7 +187,7 @@ TextTable verdict_table(const StudyAnalysis& study) {
     const NeesResult* pose = tested_pose(cell);
     return {{"runs", runs_in_words(cell), Align::left, tone_of_runs(cell)},
             {"verdict", in_words(cell.verdict), Align::left, tone_of(cell.verdict)},
-            {"NEES ratio [" + level_text(study.level) + "]", ratio_text(cell)},
+            {ratio_heading(study), ratio_text(cell)},
             {"scans in band", pose == nullptr ? "-" : percent(pose->share_inside())}};
   });
 }
@@ -197,7 +208,7 @@ TextTable accuracy_table(const StudyAnalysis& study) {
 TextTable consistency_table(const StudyAnalysis& study) {
   TextTable table{.keys = 3};
   for (const CellAnalysis& cell : study.cells) {
-    for (const NeesResult& nees : cell.nees) table.add(consistency_row(cell, nees, study.level));
+    for (const NeesResult& nees : cell.nees) table.add(consistency_row(study, cell, nees));
   }
   return table;
 }
@@ -234,6 +245,13 @@ TextTable failure_table(const StudyAnalysis& study) {
 }
 
 std::string ratio_note(const StudyAnalysis& study) {
+  const double each = study.cells.empty() ? study.level : study.cells.front().verdict.level;
+  if (study.imported.state == kInnovationsAlone) {
+    return prose("verdict", "ratio of innovations",
+                 {{"components", components_text(study)},
+                  {"each", level_text(each)},
+                  {"level", level_text(study.level)}});
+  }
   return prose("verdict", "ratio",
                {{"components", components_text(study)}, {"level", level_text(study.level)}});
 }
@@ -305,7 +323,7 @@ std::vector<std::string> cautions(std::span<const CellAnalysis> cells,
 
 TextTable summary_table(const StudyAnalysis& study) {
   TextTable table;
-  const std::string ratio = "NEES ratio [" + level_text(study.level) + "]";
+  const std::string ratio = ratio_heading(study);
   const auto entry_of = [](const Verdict& verdict) -> TextTable::Entry {
     return {"verdict", answer_in_words(verdict), Align::left, tone_of(verdict)};
   };

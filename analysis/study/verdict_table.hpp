@@ -43,6 +43,8 @@ Frame family_frame(const FamilyTest& test);
 /// A table with one row for each failed run: cell, run, step, reason.
 TextTable failure_table(const StudyAnalysis& study);
 
+/// Heading of a column of ratios: "NEES ratio [95 %]", or "NIS ratio [95 %]" of innovations.
+std::string ratio_heading(const StudyAnalysis& study);
 /// Explains the NEES ratio.
 std::string ratio_note(const StudyAnalysis& study);
 

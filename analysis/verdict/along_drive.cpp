@@ -2,6 +2,7 @@
 #include "analysis/verdict/along_drive.hpp"
 
 #include "analysis/statistics/correlated_average.hpp"
+#include "analysis/verdict/summed_error.hpp"
 
 #include <algorithm>
 #include <array>
@@ -73,6 +74,43 @@ void add_test(Family family, std::string name, std::vector<VectorSeries> drives,
                  }});
 }
 
+/// Scans of all runs in [first, end), of which the components in [from, to) are judged.
+struct JudgedPart {
+  std::size_t first = 0, end = 0, from = 0, to = 0;
+};
+
+/// The test of the mean square of errors {run}{scan, `dimension`} that are independent from scan to
+/// scan: a chi-square variable, of fewer degrees of freedom if the squares vary more than those of
+/// Gaussian errors.
+void add_white_test(Family family, Member member, const ErrorsOfRuns& runs, std::size_t dimension,
+                    const JudgedPart& part, std::vector<MemberTest>& all) {
+  std::vector<double> sums, counts;
+  double sum = 0.0, count = 0.0;
+  for (const std::vector<double>& run : runs) {
+    for (std::size_t s = part.first; s < std::min(part.end, run.size() / dimension); ++s) {
+      double of_scan = 0.0, components = 0.0;
+      for (std::size_t k = s * dimension + part.from; k < s * dimension + part.to; ++k) {
+        if (std::isnan(run[k])) continue;
+        of_scan += run[k] * run[k];
+        components += 1.0;
+      }
+      sums.push_back(of_scan);
+      counts.push_back(components);
+      sum += of_scan;
+      count += components;
+    }
+  }
+  const double ratio = sum / count;
+  if (!(ratio >= kLeastRatio)) return;
+  double squares = 0.0;
+  for (std::size_t s = 0; s < sums.size(); ++s) {
+    squares += std::pow(sums[s] / ratio - counts[s], 2);
+  }
+  member.estimate = ratio;
+  const double more_than_gaussian = std::max(1.0, squares / (2.0 * count));
+  all.push_back(chi_squared_test(family, std::move(member), count / more_than_gaussian));
+}
+
 }  // namespace
 
 void AlongDrive::add(const WhitenedRun& run) {
@@ -113,6 +151,24 @@ std::vector<MemberTest> AlongDrive::tests(std::span<const std::string> component
   for (std::size_t k = 0; dimension_ > 1 && k < dimension_; ++k) {
     const std::array one = {k};
     add_test(Family::component, components[k], drives_of(standardised_, dimension_, one), all);
+  }
+  return all;
+}
+
+std::vector<MemberTest> AlongDrive::white_tests(std::span<const std::string> components,
+                                                std::span<const std::size_t> ends,
+                                                std::span<const Member> stretches) const {
+  std::vector<MemberTest> all;
+  if (dimension_ == 0 || ends.empty()) return all;
+  const JudgedPart whole{0, ends.back(), 0, dimension_};
+  add_white_test(Family::size, {}, whitened_, dimension_, whole, all);
+  for (std::size_t k = 0; dimension_ > 1 && k < dimension_; ++k) {
+    add_white_test(Family::component, {.name = components[k]}, standardised_, dimension_,
+                   {0, ends.back(), k, k + 1}, all);
+  }
+  for (std::size_t s = 0; s < stretches.size(); ++s) {
+    add_white_test(Family::stretch, stretches[s], whitened_, dimension_,
+                   {s == 0 ? 0 : ends[s - 1], ends[s], 0, dimension_}, all);
   }
   return all;
 }

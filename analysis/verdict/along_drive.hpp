@@ -26,6 +26,11 @@ class AlongDrive {
   bool have_short_memory() const;
   /// The families of size and, of several components, of components; empty without errors.
   std::vector<MemberTest> tests(std::span<const std::string> components) const;
+  /// The same by the law of errors that are independent from scan to scan (STATISTICS (9.5)), and
+  /// the family of stretches that end at the scans `ends` and are called `stretches`.
+  std::vector<MemberTest> white_tests(std::span<const std::string> components,
+                                      std::span<const std::size_t> ends,
+                                      std::span<const Member> stretches) const;
 
  private:
   void forget_if_enough();

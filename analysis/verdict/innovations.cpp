@@ -149,8 +149,8 @@ void InnovationSums::merge(InnovationSums& next) {
   others_.add(next.largest_->nis, next.largest_->dof);
 }
 
-Innovations InnovationSums::result(std::span<const double> times, double level,
-                                   double within) const {
+Innovations InnovationSums::result(std::span<const double> times, double level, double within,
+                                   const GateScale* gate) const {
   expect(largest_.has_value() && largest_->scan < largest_->dof.size() &&
              largest_->nis.size() == largest_->dof.size(),
          "an innovation of a scan");
@@ -160,8 +160,8 @@ Innovations InnovationSums::result(std::span<const double> times, double level,
   dof[largest_->scan] = 0;
   without.add(largest_->nis, dof);
   const auto components = correlated_components(all.runs(), level);
-  Innovations result = all.result(times, level, within, components);
-  const Innovations rest = without.result(times, level, within, components);
+  Innovations result = all.result(times, level, within, gate, components);
+  const Innovations rest = without.result(times, level, within, gate, components);
   result.largest = {.nis = largest_->nis[largest_->scan],
                     .dof = static_cast<double>(largest_->dof[largest_->scan]),
                     .run = largest_->run,
@@ -195,7 +195,7 @@ std::vector<ComponentCorrelation> InnovationSums::correlated_components(std::uin
 }
 
 Innovations InnovationSums::Totals::result(std::span<const double> times, double level,
-                                           double within,
+                                           double within, const GateScale* gate,
                                            std::vector<ComponentCorrelation> components) const {
   Innovations result;
   result.components = std::move(components);
@@ -211,7 +211,7 @@ Innovations InnovationSums::Totals::result(std::span<const double> times, double
   }
   result.share_inside = inside / tested;
   find_correlations(level, result);
-  judge_size(times, level, within, result);
+  judge_size(times, level, within, gate, result);
   return result;
 }
 
@@ -237,13 +237,14 @@ void InnovationSums::Totals::find_correlations(double level, Innovations& result
 }
 
 void InnovationSums::Totals::judge_size(std::span<const double> times, double level, double within,
-                                        Innovations& result) const {
+                                        const GateScale* gate, Innovations& result) const {
   std::vector<FamilyTest> families;
   if (result.whiteness() != Whiteness::not_white) {
     families = nis_.white_families(level, times);
   } else if (runs() >= kFewestRunsOfSize) {
     families = judge_tests({nis_.size_test()}, level);
   }
+  if (gate != nullptr) gate->put_factors(families);
   result.verdict = judge(std::move(families), level, within, runs());
   double sum = 0.0, freedom = 0.0;
   for (const SummedError::Scan& scan : nis_.scans()) {
@@ -251,7 +252,8 @@ void InnovationSums::Totals::judge_size(std::span<const double> times, double le
     freedom += scan.dimensions;
   }
   const double judged = result.verdict.ratio_estimate();
-  result.ratio = std::isnan(judged) ? sum / freedom : judged;
+  const double given = sum / freedom, ratio = gate == nullptr ? given : gate->factor_of(given);
+  result.ratio = std::isnan(judged) ? ratio : judged;
 }
 
 Whiteness Innovations::whiteness() const {

@@ -4,6 +4,7 @@
 #include "analysis/statistics/interval.hpp"
 #include "analysis/statistics/spread.hpp"
 #include "analysis/statistics/sums.hpp"
+#include "analysis/verdict/gate_scale.hpp"
 #include "analysis/verdict/summed_error.hpp"
 #include "analysis/verdict/verdict.hpp"
 
@@ -93,6 +94,11 @@ struct Innovations {
   bool are_decided_by_largest() const;
 };
 
+/// The verdict on the components of innovations of a few drives if they are white.
+struct VerdictOnWhite {
+  Verdict verdict;
+};
+
 /// The findings in words: "white, consistent", "not white, size optimistic", "not white, size not
 /// judged", ...; "white" if no size is judged.
 std::string whiteness_in_words(Whiteness whiteness, std::optional<Answer> size);
@@ -170,8 +176,9 @@ class InnovationSums {
            std::span<const std::uint32_t> dof, std::span<const double> standardised = {});
   bool empty() const { return !largest_; }
   /// The test. There must be an innovation. `times` [s] of the scans; `level` of the whiteness and
-  /// of bounds, `within` the margin.
-  Innovations result(std::span<const double> times, double level, double within) const;
+  /// of bounds, `within` the margin; `gate` that they passed, nullptr if none.
+  Innovations result(std::span<const double> times, double level, double within,
+                     const GateScale* gate = nullptr) const;
   static constexpr auto parts() {
     using Sums = InnovationSums;
     return std::tuple(Part{[](Sums& sums, Sums& next) { sums.merge(next); },
@@ -185,7 +192,7 @@ class InnovationSums {
     void add(std::span<const double> nis, std::span<const std::uint32_t> dof);
     /// The findings; the whiteness of the components is known already.
     Innovations result(std::span<const double> times, double level, double within,
-                       std::vector<ComponentCorrelation> components) const;
+                       const GateScale* gate, std::vector<ComponentCorrelation> components) const;
     /// Number of runs with an innovation.
     std::uint64_t runs() const { return nis_.ratios().n; }
     static constexpr auto parts() { return std::tuple(added(&Totals::nis_, &Totals::products_)); }
@@ -193,7 +200,7 @@ class InnovationSums {
    private:
     void find_correlations(double level, Innovations& result) const;
     void judge_size(std::span<const double> times, double level, double within,
-                    Innovations& result) const;
+                    const GateScale* gate, Innovations& result) const;
 
     SummedError nis_;          ///< {scan} sums of the NIS
     LaggedProducts products_;  ///< of the deviations of the NIS

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "analysis/verdict/gate_scale.hpp"
 #include "analysis/verdict/verdict.hpp"
 #include "analysis/verdict/whole_error.hpp"
 #include "engine/core/judgement.hpp"
@@ -18,6 +19,7 @@ struct InterimAnalysis {
   std::vector<std::uint64_t> runs_at_analyses = {};
   /// Share of the study's runs that are judged: less than 1 in a shard.
   double share_of_runs = 1.0;
+  const GateScale* gate = nullptr;  ///< of the gate that innovations passed; nullptr if none
 };
 
 /// The verdict on the errors of `complete` of the `ended` runs of a cell. The answer "consistent"

@@ -311,7 +311,7 @@ std::string ratio_words(const Verdict& verdict, Side direction) {
   if (!shown) return "";
   const std::string time =
       shown->test->family == Family::size ? when(verdict, direction) : std::string();
-  return "NEES " + factor_text(*shown, direction) +
+  return (verdict.is_of_innovations ? "NIS " : "NEES ") + factor_text(*shown, direction) +
          (direction == Side::above ? " times too large" : " times too small") + place_of(*shown) +
          (time.empty() ? "" : ", " + time);
 }
@@ -443,6 +443,7 @@ std::string few_runs_words(const Verdict& verdict) {
   if (complete_runs(verdict) >= kFewestJudgedRuns) return "";
   const std::string fewer = "of fewer than " + std::to_string(kFewestJudgedRuns) + " runs ";
   if (verdict.find(Family::size) == nullptr) return fewer + "single scans alone are judged";
+  if (!std::isnan(verdict.over_drives.upper)) return fewer + "correlations are not judged";
   return fewer + (verdict.is_of_innovations ? "" : "bias, ") +
          "correlations and stretches of the drive are not judged";
 }
@@ -485,12 +486,29 @@ std::string open_part(const Verdict& verdict) {
   return std::string(is_stretch ? " from " : " in ") + place + ", as it is on average";
 }
 
+/// Text on a few drives of white innovations, whose own size is known better than that of others.
+std::string white_drives_words(const Verdict& verdict) {
+  const std::uint64_t runs = complete_runs(verdict);
+  const std::string drives = runs == 1 ? "this drive" : "these " + std::to_string(runs) + " drives";
+  const auto range = [](const Interval& ratio) { return from_to(ratio.lower, ratio.upper); };
+  return "undecided: no fault is shown; on " + drives + " its squared errors are " +
+         compact(verdict.ratio_estimate()) + " times what it claims (" + level_text(verdict.level) +
+         ": " + range(verdict.ratio()) +
+         "); an error that lasts for a whole drive, and is small on " + drives +
+         ", would not be seen: over many drives the ratio of every component is only known to be " +
+         range(verdict.over_drives) + ", and not to be within " + exact_text(verdict.within);
+}
+
 std::string undecided_words(const Verdict& verdict) {
   if (verdict.is_by_upper_bounds) {
     return "undecided: its errors are not shown to be larger than they may be at most, which shows "
            "no fault and no consistency";
   }
   const std::uint64_t runs = complete_runs(verdict);
+  const Interval& others = verdict.over_drives;
+  if (others.upper > verdict.within || others.lower < 1.0 / verdict.within) {
+    return joined({white_drives_words(verdict), few_runs_words(verdict), more_runs_words(verdict)});
+  }
   const std::string words = "undecided: no fault is shown, and " + std::to_string(runs) +
                             (runs == 1 ? " run is" : " runs are") + " too few to show that it is " +
                             within_words(verdict);

@@ -76,6 +76,10 @@ MemberTest ratio_test(Family family, Member member, const RunMean& ratio) {
   return {family, std::move(member), [ratio](double level) { return ratio.interval(level); }};
 }
 
+MemberTest chi_squared_test(Family family, Member member, double freedom) {
+  return exact_test(family, std::move(member), freedom, std::make_shared<ChiSquareLaw>());
+}
+
 void SummedError::add(std::span<const double> nees, double dimension) {
   add(nees, std::vector<double>(nees.size(), dimension));
 }

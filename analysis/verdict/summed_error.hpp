@@ -20,6 +20,10 @@ std::vector<std::size_t> ends_of_stretches(std::size_t scans);
 /// The test of a ratio of squared errors to the expected ones over runs, as a member of `family`.
 MemberTest ratio_test(Family family, Member member, const RunMean& ratio);
 
+/// The test of the mean of `freedom` squares of independent standard normal variables, which is the
+/// estimate of `member`, by its exact law.
+MemberTest chi_squared_test(Family family, Member member, double freedom);
+
 /// Adds up the NEES of every scan over runs, and of every run over scans (STATISTICS 5).
 class SummedError {
  public:

@@ -160,9 +160,8 @@ bool is_within_margin(const Verdict& verdict) {
   return verdict.find(Family::size) != nullptr && !is_any_member(verdict, spoils);
 }
 
-Answer answer_of_tests(const Verdict& verdict) {
-  if (verdict.families.empty()) return Answer::untested;
-  if (is_within_margin(verdict)) return Answer::consistent;
+/// The answer by what is shown to be off.
+Answer shown_answer(const Verdict& verdict) {
   bool is_above = false, is_below = false, is_rejected = false;
   for (const FamilyTest& test : verdict.families) {
     if (claim_of(test.family) == Deviation::none) continue;
@@ -175,6 +174,11 @@ Answer answer_of_tests(const Verdict& verdict) {
   }
   if (is_above != is_below) return is_above ? Answer::optimistic : Answer::conservative;
   return is_rejected ? Answer::inconsistent : Answer::undecided;
+}
+
+Answer answer_of_tests(const Verdict& verdict) {
+  if (verdict.families.empty()) return Answer::untested;
+  return is_within_margin(verdict) ? Answer::consistent : shown_answer(verdict);
 }
 
 Answer answer_of(const Verdict& verdict) {
@@ -331,6 +335,24 @@ void take_for_upper_bounds(Verdict& verdict) {
   verdict.answer = answer_of(verdict);
   verdict.is_refused = is_refused(verdict);
   verdict.more_runs.reset();
+}
+
+void take_for_white_drives(const Verdict& of_any_memory, Verdict& verdict) {
+  Interval& range = verdict.over_drives;
+  range = of_any_memory.ratio();
+  for (const FamilyTest& test : of_any_memory.families) {
+    if (test.family != Family::component) continue;
+    for (const Member& member : test.members) {
+      range = {std::min(range.lower, member.interval.lower),
+               std::max(range.upper, member.interval.upper)};
+    }
+  }
+  const bool is_open =
+      verdict.of_tests == Answer::consistent && of_any_memory.of_tests != Answer::consistent;
+  if (!is_open) return;
+  verdict.of_tests = shown_answer(verdict);
+  verdict.answer = answer_of(verdict);
+  verdict.is_refused = is_refused(verdict);
 }
 
 void refuse_by_bets(Side side, Verdict& verdict) {

@@ -171,6 +171,9 @@ struct Verdict {
   bool is_by_upper_bounds = false;
   /// Whether errors are innovations, whose bias is judged beside it (Innovations::components).
   bool is_of_innovations = false;
+  /// Interval of the ratio over many drives, of fewer than kFewestRunsOfAPlan runs whose errors are
+  /// white: ratio() is that of their own drives. NaN of others.
+  Interval over_drives = {kNaN, kNaN};
 
   /// Whether something is shown to be off: neither consistent nor undecided nor untested.
   bool has_finding() const;
@@ -195,6 +198,10 @@ Verdict judge(std::vector<FamilyTest> families, double level, double within, std
 /// Takes the covariances of a verdict for upper bounds: what errors that are too small,
 /// correlations, spreads and tails had shown is dropped.
 void take_for_upper_bounds(Verdict& verdict);
+
+/// Takes `verdict` for that on a few drives whose errors are white. It calls a filter consistent
+/// only where `of_any_memory`, the verdict on the same errors whatever their memory is, does too.
+void take_for_white_drives(const Verdict& of_any_memory, Verdict& verdict);
 
 /// Refuses a filter by bets (STATISTICS 18), unless it is shown to be consistent.
 void refuse_by_bets(Side side, Verdict& verdict);

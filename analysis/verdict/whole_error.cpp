@@ -311,11 +311,18 @@ void WholeError::add_largest_test(const ErrorNames& names, std::vector<MemberTes
 }
 
 std::vector<FamilyTest> WholeError::families(double level, const ErrorNames& names) const {
-  std::vector<MemberTest> all = nees_.scan_tests(names.times);
   if (nees_.ratios().n < kFewestJudgedRuns) {
+    std::vector<MemberTest> all = nees_.scan_tests(names.times);
     std::ranges::move(along_.tests(names.components), std::back_inserter(all));
     return judge_tests(std::move(all), level);
   }
+  std::vector<MemberTest> all = tests_over_runs(names);
+  return judge_tests(std::move(all), level);
+}
+
+/// The tests of three runs and more.
+std::vector<MemberTest> WholeError::tests_over_runs(const ErrorNames& names) const {
+  std::vector<MemberTest> all = nees_.scan_tests(names.times);
   expect(dimension_ <= std::min(names.components.size(), bias_.size()) &&
              (dimension_ == 1 || dimension_ <= component_.size()),
          "sums of each component");
@@ -335,14 +342,29 @@ std::vector<FamilyTest> WholeError::families(double level, const ErrorNames& nam
   add_correlation_tests(names, all);
   groups_.add_tests(all);
   add_largest_test(names, all);
+  return all;
+}
+
+std::vector<FamilyTest> WholeError::white_families(double level, const ErrorNames& names) const {
+  if (!has_drives()) return {};
+  std::vector<MemberTest> all =
+      nees_.ratios().n < kFewestJudgedRuns ? nees_.scan_tests(names.times) : tests_over_runs(names);
+  std::erase_if(all, [](const MemberTest& test) {
+    return test.family == Family::size || test.family == Family::component ||
+           test.family == Family::stretch;
+  });
+  std::vector<Member> members;
+  for (std::size_t k = 0; stretches() > 1 && k < stretches(); ++k) {
+    members.push_back(in_stretch("", k, names));
+  }
+  std::ranges::move(along_.white_tests(names.components, ends_, members), std::back_inserter(all));
   return judge_tests(std::move(all), level);
 }
 
 /// Puts the tests along the drives in place of those of size and components, if the errors of all
 /// runs were kept and forget fast.
 void WholeError::judge_along_drives(const ErrorNames& names, std::vector<MemberTest>& all) const {
-  const bool has_all = along_.runs() < kFewestRunsOfAPlan && along_.runs() == nees_.ratios().n;
-  if (!has_all || !along_.have_short_memory()) return;
+  if (!has_drives() || !along_.have_short_memory()) return;
   std::vector<MemberTest> tests = along_.tests(names.components);
   if (tests.empty()) return;
   std::erase_if(all, [](const MemberTest& test) {

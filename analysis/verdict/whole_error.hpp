@@ -61,6 +61,10 @@ class WholeError {
   /// kFewestRunsOfAPlan runs are judged along the drives if errors forget fast; fewer than
   /// kFewestJudgedRuns runs have no other families but the scans.
   std::vector<FamilyTest> families(double level, const ErrorNames& names) const;
+  /// The families of fewer than kFewestRunsOfAPlan runs whose errors are white, as innovations of a
+  /// consistent filter are: size, components and stretches are judged by the law of such errors.
+  /// Empty if there are more runs.
+  std::vector<FamilyTest> white_families(double level, const ErrorNames& names) const;
   /// The side of the margin on which bets on the ratios of runs refuse the filter (STATISTICS 18).
   std::optional<Side> refused_by_bets(double margin, double level) const;
   /// Findings that are in no test.
@@ -116,6 +120,11 @@ class WholeError {
   std::size_t first_scan(std::size_t stretch) const {
     return stretch == 0 ? 0 : ends_[stretch - 1];
   }
+  /// Whether the errors of all runs are kept to be judged along their drives.
+  bool has_drives() const {
+    return along_.runs() < kFewestRunsOfAPlan && along_.runs() == nees_.ratios().n;
+  }
+  std::vector<MemberTest> tests_over_runs(const ErrorNames& names) const;
   std::vector<MeanOfRun> ratios_of(const WhitenedRun& run, std::span<const double> nees) const;
   void add_stretches(std::span<const MeanOfRun> ratios);
   void add_components(const WhitenedRun& run);

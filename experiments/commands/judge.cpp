@@ -76,7 +76,7 @@ JudgingOptions judging_options(const Arguments& arguments) {
   options.equal_times = equal_times_of(arguments);
   if (const auto name = arguments.text("anchor")) options.anchor = anchor_named(*name);
   options.adds_truth_covariance = arguments.has("truth-cov");
-  if (const auto gate = arguments.text("gate")) options.gate.emplace(*gate);
+  if (const auto gates = arguments.text("gate")) options.gates.emplace(*gates);
   if (const auto windows = arguments.text("windows")) options.windows = windows_in(*windows);
   options.are_innovations = arguments.has("innovations");
   if (const auto names = arguments.text("components")) options.components = split(*names, ',');
@@ -151,7 +151,7 @@ std::unique_ptr<EstimateSource> innovations_of(const Arguments& arguments,
       "interpolate", "longest-gap", "components", "keep",   "tolerance"};
   refuse_options(arguments, kOfStates, "--innovations (innovations need no truth and no state)");
   return std::make_unique<InnovationFiles>(
-      pair_files(arguments.operands(), {}, arguments.text("cell")), options.gate);
+      pair_files(arguments.operands(), {}, arguments.text("cell")), options.gates);
 }
 
 /// The files of two estimators, the second of which is in place of the truth. Fills `pair`.
@@ -178,7 +178,15 @@ std::unique_ptr<EstimateSource> pair_of(const Arguments& arguments,
 /// Throws StudyError if a file is called like arrays, which are read from HDF5.
 void refuse_other_arrays(const std::string& path) {
   const std::string ending = std::filesystem::path(path).extension().string();
-  constexpr std::array<std::string_view, 5> kOfArrays = {".h5", ".hdf5", ".mat", ".npz", ".npy"};
+  if (ending == ".npy") {
+    throw StudyError(
+        "{}: a NumPy array (errors and covariances are read from one HDF5 file): call "
+        "montecarta.judge(errors, covariances) in Python, or write the file by h5py: "
+        "f = h5py.File(\"a.h5\", \"w\"); f[\"error\"] = errors; f[\"covariance\"] = covariances; "
+        "f.close()",
+        path);
+  }
+  constexpr std::array<std::string_view, 4> kOfArrays = {".h5", ".hdf5", ".mat", ".npz"};
   if (std::ranges::count(kOfArrays, ending) > 0) {
     throw StudyError(
         "{}: is there no such file, or no HDF5 file (arrays are in one): give its name; convert "
@@ -197,7 +205,7 @@ std::unique_ptr<EstimateSource> source_of(const Arguments& arguments, JudgingOpt
     throw StudyError("--names: needs an HDF5 file (a CSV file has a header): leave it out");
   }
   if (arguments.has("innovations")) return innovations_of(arguments, options);
-  if (options.gate) {
+  if (options.gates) {
     throw StudyError(
         "--gate: needs --innovations (a gate is judged by each of them): leave it out");
   }

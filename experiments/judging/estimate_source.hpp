@@ -21,8 +21,8 @@ class EstimateSource {
 
   /// {cell} Labels of the estimators, in alphabetical order.
   virtual const std::vector<std::string>& cells() const = 0;
-  /// The sensor whose innovations a cell has; empty if its estimator has one cell.
-  virtual std::string sensor(std::size_t /*cell*/) const { return ""; }
+  /// Settings of a cell that others may not have, such as its sensor.
+  virtual TextPairs settings(std::size_t /*cell*/) const { return {}; }
   /// {run} Numbers of the runs, consecutive and increasing.
   virtual const std::vector<std::uint64_t>& runs() const = 0;
   /// The file (or the array) with the estimates of a run, for messages.

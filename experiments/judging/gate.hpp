@@ -2,7 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace montecarta::experiments {
 
@@ -24,6 +27,25 @@ class Gate {
   std::string text_;
   double limit_ = 0.0;
   double share_ = 0.0;  ///< of innovations that pass; 0: limit_ is the same for all
+};
+
+/// The gates of the sensors of a filter.
+class Gates {
+ public:
+  /// Reads a gate, of all innovations, or those of sensors by their names: "lidar=9,gps=99%".
+  /// Throws StudyError that names --gate.
+  explicit Gates(std::string text);
+
+  const std::string& text() const { return text_; }
+  /// The gate of a sensor; nullopt if its innovations pass none.
+  std::optional<Gate> of(const std::string& sensor) const;
+  /// Throws StudyError if a gate is that of a sensor which is not among these.
+  void require_sensors(const std::vector<std::string>& known) const;
+
+ private:
+  std::string text_;
+  std::optional<Gate> of_all_;
+  std::vector<std::pair<std::string, Gate>> of_sensors_;
 };
 
 }  // namespace montecarta::experiments

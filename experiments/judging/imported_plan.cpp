@@ -34,9 +34,7 @@ class ImportedDrives final : public DriveSource {
 
 TextPairs import_settings(const StateShape& shape, const JudgingOptions& options) {
   if (shape.dimension() == 0) {
-    TextPairs settings = {{"state", "innovations"}};
-    if (options.gate) settings.emplace_back("gate", options.gate->text());
-    return settings;
+    return {{"state", "innovations"}};
   }
   std::vector<std::string> components, units;
   for (const Eigen::Index k : judged_components(shape, options.components)) {
@@ -49,7 +47,6 @@ TextPairs import_settings(const StateShape& shape, const JudgingOptions& options
                         {"error", name_of(*options.convention)},
                         {"components", joined(components)},
                         {"units", joined(units)}};
-  if (options.gate) settings.emplace_back("gate", options.gate->text());
   if (!options.windows.empty()) {
     std::vector<std::string> windows;
     for (const double window : options.windows) windows.push_back(to_text(window));
@@ -75,8 +72,8 @@ std::string import_text(const EstimateSource& source, const TextPairs& settings)
   return text;
 }
 
-Cell imported_cell(const std::string& label, const std::string& sensor, const StateRows& first,
-                   std::size_t components, const TextPairs& settings) {
+Cell imported_cell(const std::string& label, const StateRows& first, std::size_t components,
+                   TextPairs settings) {
   const bool is_whole = components == first.shape.dimension();
   const std::size_t known = conventions_of(first.shape.kind).size();
   const std::size_t conventions = is_whole && known > 1 ? known : 0;
@@ -88,8 +85,7 @@ Cell imported_cell(const std::string& label, const std::string& sensor, const St
                                 .has_innovations = !first.nis.empty(),
                                 .conventions = conventions,
                                 .has_pose = is_whole && first.shape.kind == StateKind::pose};
-  cell.settings = settings;
-  if (!sensor.empty()) cell.settings.emplace_back("sensor", sensor);
+  cell.settings = std::move(settings);
   return cell;
 }
 
@@ -122,8 +118,9 @@ StudyPlan imported_plan(const EstimateSource& source, const StateRows& first,
   plan.last_run = plan.runs = source.runs().back() + 1;
   plan.columns = {.ancestry = false, .scans_only = true};
   for (std::size_t c = 0; c < source.cells().size(); ++c) {
-    plan.cells.push_back(
-        imported_cell(source.cells()[c], source.sensor(c), first, components, settings));
+    TextPairs all = settings;
+    std::ranges::copy(source.settings(c), std::back_inserter(all));
+    plan.cells.push_back(imported_cell(source.cells()[c], first, components, std::move(all)));
   }
   plan.drives =
       std::make_shared<ImportedDrives>(std::move(times), plan.cells.front().imported->has_pose);
@@ -135,6 +132,7 @@ StudyPlan imported_plan(const EstimateSource& source, const StateRows& first,
                                options.equal_times == EqualTimes::keep_first ? "first" : "last");
   }
   TextPairs all = settings;
+  if (options.gates) all.emplace_back("gate", options.gates->text());
   all.insert(all.end(), plan.scenario.begin() + 1, plan.scenario.end());
   plan.resolved_text = import_text(source, all);
   if (options.within)

@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <utility>
 #include <vector>
 
@@ -63,14 +62,23 @@ void require_components(const CsvRows& file, const EstimateFields& fields) {
 }
 
 /// The NIS of a row, as it would be without the gate.
-double without_gate(const CsvRows& file, double nis, std::uint32_t dof,
-                    const std::optional<Gate>& gate) {
+double without_gate(const CsvRows& file, const EstimateFields& fields, double nis,
+                    std::uint32_t dof, const std::optional<Gate>& gate) {
   if (!gate) return nis;
   if (dof > 0 && nis > gate->limit(dof) * (1.0 + analysis::kRoundingOfGate)) {
-    file.refuse(
-        formatted("a NIS of {} is beyond --gate {} (which the filter leaves out): leave it out, or "
-                  "give the gate that it has",
-                  to_text(nis), gate->text()));
+    const std::string limit = gate->text();
+    if (!fields.sensor) {
+      file.refuse(
+          formatted("a NIS of {} is beyond --gate {} (which the filter leaves out): leave "
+                    "it out, or give the gate that it has",
+                    to_text(nis), limit));
+    }
+    const std::string sensor(file.field(*fields.sensor));
+    file.refuse(formatted(
+        "sensor {0} has a NIS of {1}, beyond its --gate {2} (which the filter leaves out): leave "
+        "the row out, give the gate that {0} has, or, if it has none, name those that have one: "
+        "--gate SENSOR={2}",
+        sensor, to_text(nis), limit));
   }
   return gate->without_gate(nis, dof);
 }
@@ -125,16 +133,20 @@ class InnovationsOfRows {
 
 }  // namespace
 
-std::vector<std::string> sensors_in(const fs::path& path) {
+std::map<std::string, PassedInnovations> innovations_in(const fs::path& path) {
   CsvRows file(path);
   const EstimateFields fields = innovation_fields(file.columns(), file.place());
-  std::set<std::string> sensors;
-  while (fields.sensor && file.next()) {
-    const std::string sensor(file.field(*fields.sensor));
-    if (sensor.empty()) file.refuse("no sensor (the column names it): write its name");
-    sensors.insert(sensor);
+  std::map<std::string, PassedInnovations> sensors;
+  while (file.next()) {
+    const std::string sensor(fields.sensor ? file.field(*fields.sensor) : "");
+    if (fields.sensor && sensor.empty()) {
+      file.refuse("no sensor (the column names it): write its name");
+    }
+    require_components(file, fields);
+    const auto [nis, dof] = nis_in(file, fields);
+    sensors[sensor].add(nis, dof);
   }
-  return {sensors.begin(), sensors.end()};
+  return sensors;
 }
 
 std::optional<fs::path> innovations_beside(const fs::path& estimates) {
@@ -166,7 +178,7 @@ void read_innovations(const fs::path& path, const fs::path& estimates, double to
     if (!is_of_sensor(file, fields, choice.sensor)) continue;
     require_components(file, fields);
     const auto [as_given, row_dof] = nis_in(file, fields);
-    const double row_nis = without_gate(file, as_given, row_dof, choice.gate);
+    const double row_nis = without_gate(file, fields, as_given, row_dof, choice.gate);
     count_unwrapped(file, fields, rows);
     if (rows.time.empty()) continue;
     const std::size_t k = place_in(rows, time, tolerance, file, estimates);

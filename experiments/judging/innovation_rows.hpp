@@ -2,12 +2,13 @@
 #pragma once
 
 #include "experiments/judging/gate.hpp"
+#include "experiments/judging/passed_innovations.hpp"
 #include "experiments/judging/state_rows.hpp"
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
-#include <vector>
 
 namespace montecarta::experiments {
 
@@ -36,7 +37,7 @@ struct InnovationChoice {
 void read_innovations(const std::filesystem::path& path, const std::filesystem::path& estimates,
                       double tolerance, StateRows& rows, const InnovationChoice& choice = {});
 
-/// The sensors in a file of innovations, in alphabetical order; empty if it has no such column.
-std::vector<std::string> sensors_in(const std::filesystem::path& path);
+/// The innovations of each sensor in a file; of "" if it has no such column.
+std::map<std::string, PassedInnovations> innovations_in(const std::filesystem::path& path);
 
 }  // namespace montecarta::experiments

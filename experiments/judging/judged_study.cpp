@@ -295,7 +295,9 @@ std::vector<std::string> write_innovations(const EstimateSource& source, const O
       writer.write(c, run, record);
     }
   }
-  return unwrapped.notes();
+  std::vector<std::string> notes = source.notes();
+  for (std::string& note : unwrapped.notes()) notes.push_back(std::move(note));
+  return notes;
 }
 
 /// What is said of all runs.

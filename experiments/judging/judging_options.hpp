@@ -29,7 +29,7 @@ struct JudgingOptions {
   bool are_innovations = false;              ///< whether the files have innovations alone
   std::vector<double> windows = {};          ///< [s] increments over these are judged; or empty
   bool bounds_increments = false;            ///< whether their covariances are only bounds
-  std::optional<Gate> gate = {};             ///< of the innovations
+  std::optional<Gates> gates = {};           ///< of the innovations
   std::vector<std::string> components = {};  ///< names of those that are judged; empty: all
   EqualTimes equal_times = EqualTimes::refuse;
   Existing existing = Existing::refuse;

@@ -176,7 +176,12 @@ std::vector<std::size_t> slots_of_run(const Group& group) {
       if (rank_of(path.slots[k].word) == rank) chosen.push_back(k);
     }
   }
-  if (varying.empty()) return {chosen.empty() ? candidates.back() : chosen.back()};
+  if (varying.empty()) {
+    if (!chosen.empty()) return {chosen.back()};
+    // The bare number of a folder counts other things than runs.
+    const bool is_of_file = path.slots.back().part + 1 == path.parts.size();
+    return is_of_file ? std::vector{candidates.back()} : std::vector<std::size_t>();
+  }
   if (chosen.empty()) chosen = bare_numbers(path, varying);
   for (const std::size_t k : chosen) {  // one slot may be enough
     if (distinct_keys(group, {k}) == distinct_keys(group, chosen)) return {k};

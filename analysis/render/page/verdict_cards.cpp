@@ -140,7 +140,8 @@ std::string spark_html(const StudyAnalysis& study, const CellAnalysis& cell, std
   const Interval bounds = nees_bounds(cell.complete, series->dimension, study.level);
   const std::string bars = line.bars(cell.verdict);
   return html_explained(
-             "NEES ratio from 0 to " + readable(study.times.back()) + " s",
+             std::string(study.imported.name_of_ratio()) + " from 0 to " +
+                 readable(study.times.back()) + " s",
              html_paragraphs({prose("cards", "curve", {{"level", level_text(study.level)}})})) +
          "<svg class=\"spark\" role=\"img\" viewBox=\"0 0 " +
          pixels(kSparkLeft + kSparkWidth + 2.0) + " " +
@@ -183,7 +184,8 @@ std::vector<std::string> ratio_notes(const StudyAnalysis& study, const CellAnaly
 }
 
 std::string numbers_html(const StudyAnalysis& study, const CellAnalysis& cell) {
-  std::string html = number_html("NEES ratio", ratio_text(cell), ratio_notes(study, cell));
+  std::string html =
+      number_html(study.imported.name_of_ratio(), ratio_text(cell), ratio_notes(study, cell));
   if (study.imported.is_imported() && study.imported.state != "pose") return html;
   return html +
          rmse_html(study, "position RMSE [m]", score_text(cell, "position_rmse", study.level)) +

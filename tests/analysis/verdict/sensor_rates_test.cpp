@@ -10,6 +10,8 @@
 
 #include <cmath>
 #include <cstdio>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace montecarta::analysis {
@@ -40,14 +42,23 @@ class SensorStudy {
 
   SensorFindings findings() const {
     const Innovations found = innovations_.result(scan_times(line_.scans), level_, kUsualMargin);
-    const bool is_off = line_.has_components
-                            ? is_rejected(verdict_of(errors_, line_.dimension, line_.scans,
-                                                     line_.runs, kUsualMargin, level_))
-                            : is_rejected(found.verdict);
+    const bool is_white = found.whiteness() == Whiteness::white;
+    const bool is_off =
+        line_.has_components ? is_rejected(verdict(is_white)) : is_rejected(found.verdict);
     return {found.whiteness() == Whiteness::not_white, is_off};
   }
 
  private:
+  /// The verdict on the components, which of a few white runs is by their own law.
+  Verdict verdict(bool is_white) const {
+    const std::vector<std::string> names = letters(line_.dimension);
+    const std::vector<double> times = scan_times(line_.scans);
+    auto white = errors_.white_families(level_, {names, times});
+    if (is_white && !white.empty()) {
+      return judge(std::move(white), level_, kUsualMargin, line_.runs);
+    }
+    return verdict_of(errors_, line_.dimension, line_.scans, line_.runs, kUsualMargin, level_);
+  }
   void add_run(std::uint64_t number, std::uint64_t run) {
     const std::size_t d = line_.dimension;
     WhitenedRun errors = drawn_run({.dimension = d}, number, run, line_.scans);

@@ -57,6 +57,7 @@ TEST_F(GateOfAFile, TellsByItsExitCode) {
   for (const char* code : {"0 shown", "4 not", "5 too few"}) {
     EXPECT_THAT(call({"gate", "--help"}).out, HasSubstr(code));
   }
+  EXPECT_THAT(call({"judge", "--help"}).out, HasSubstr("montecarta gate OUT.h5"));
 }
 
 TEST_F(GateOfAFile, AsksForTheMarginOfTheStudy) {

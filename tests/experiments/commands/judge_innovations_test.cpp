@@ -60,7 +60,7 @@ TEST_F(JudgeInnovations, BehindAGateArePutOnTheScaleWithoutOne) {
   EXPECT_GT(nis[0], 20.0) << "the largest that the gate lets pass";
   EXPECT_NEAR(nis[1], analysis::chi_squared_before_gate(1.0, 2.0, 9.0), 1e-12);
   EXPECT_EQ(nis[2], 0.0);
-  EXPECT_THAT(called.out, HasSubstr("with a NIS of at most 9 in a row of the files"));
+  EXPECT_THAT(called.out, ContainsRegex("innovations[ \n]+passes: i \\(9\\)"));
   EXPECT_THAT(judged({"i.csv"}, {"--innovations", "--gate", "8"}).err,
               HasSubstr("i.csv:2: a NIS of 9 is beyond --gate 8"));
   for (const std::string share : {"99", "0.99"}) {
@@ -71,6 +71,66 @@ TEST_F(JudgeInnovations, BehindAGateArePutOnTheScaleWithoutOne) {
   EXPECT_THAT(judged({"i.csv"}, {"--gate", "8"}).err, HasSubstr("--gate: needs --innovations"));
   EXPECT_THAT(judged({"i.csv"}, {"--innovations", "--error", "world"}).err,
               HasSubstr("--error: not beside --innovations"));
+}
+
+/// NIS of two components, `factor` times those of a right filter, of a GPS and of a lidar; a gate
+/// of `limit` lets those of the lidar pass.
+std::string sensors_with_a_gate(double factor, double limit, int rows = 1500) {
+  RngStream draw({21, 0, 0, 0, Draw::test});
+  std::string text = "time_s,sensor,nis,nis_dof\n";
+  for (int k = 0; k < rows; ++k) {
+    for (const char* const sensor : {"gps", "lidar"}) {
+      const double nis = -2.0 * factor * std::log(1.0 - draw.uniform());
+      if (sensor == std::string("lidar") && nis > limit) continue;
+      text += std::to_string(k) + "," + sensor + "," + to_text(nis) + ",2\n";
+    }
+  }
+  return text;
+}
+
+// The gate of one sensor is not that of another, and both are judged together.
+TEST_F(JudgeInnovations, MayHaveAGateOfOneSensor) {
+  write("i.csv", sensors_with_a_gate(2.0, 9.0));
+  const Called wrong = judged({"i.csv"}, {"--innovations", "--gate", "9"});
+  EXPECT_EQ(wrong.code, 2);
+  EXPECT_THAT(wrong.err, AllOf(HasSubstr("sensor gps has a NIS of"), HasSubstr("SENSOR=9")));
+  const Called called = judged({"i.csv"}, {"--innovations", "--gate", "lidar=9"});
+  ASSERT_EQ(called.code, 0) << called.err;
+  EXPECT_THAT(called.out, HasSubstr("i.lidar (9)"));
+  EXPECT_THAT(called.out, Not(HasSubstr("i.gps (")));
+  EXPECT_THAT(called.err, Not(HasSubstr("if the filter leaves them out")));
+  const auto study = analysis::analyze(ResultFile(folder_ / "mine.h5"), 0.95);
+  for (const analysis::CellAnalysis& cell : study.cells) {
+    const auto& found = cell.get<analysis::Innovations>();
+    EXPECT_NEAR(found.ratio, 2.0, 0.25) << cell.label << ": a size, whatever the gate leaves out";
+    EXPECT_EQ(found.verdict.answer, analysis::Answer::optimistic) << cell.label;
+  }
+  for (const std::string gate : {"lidr=9", "lidar=9,lidar=8", "=9", "lidar", "lidar=9,8"}) {
+    EXPECT_EQ(judged({"i.csv"}, {"--innovations", "--gate", gate}).code, 2) << gate;
+  }
+  EXPECT_THAT(judged({"i.csv"}, {"--innovations", "--gate", "lidr=9"}).err, HasSubstr("lidar?"));
+  write("j.csv", "time_s,nis,nis_dof\n1,2,2\n");
+  EXPECT_THAT(judged({"j.csv"}, {"--innovations", "--gate", "lidar=9"}).err,
+              HasSubstr("no sensor (the files have no column sensor): say --gate 9"));
+  EXPECT_EQ(judged({"i.csv"}, {"--innovations", "--gate", "lidar=99%,gps=1000"}).code, 0);
+  write("k_0.csv", "time_s,sensor,nis,nis_dof\n1,gps,2,2\n");
+  write("k_1.csv", "time_s,nis,nis_dof\n1,3,2\n");
+  EXPECT_THAT(judged({"k_0.csv", "k_1.csv"}, {"--innovations"}).err,
+              HasSubstr("files with and without a column sensor"));
+}
+
+TEST_F(JudgeInnovations, ThatEndAtALimitMayHavePassedAGate) {
+  const auto notes = [&](double factor, double limit) {
+    write("i.csv", sensors_with_a_gate(factor, limit));
+    return judged({"i.csv"}, {"--innovations"}).err;
+  };
+  EXPECT_THAT(notes(1.0, 9.0), AllOf(HasSubstr("no NIS of sensor lidar is beyond 9.00, where 1"),
+                                     HasSubstr("say --gate lidar=9\n")));
+  EXPECT_THAT(notes(2.0, 9.0), HasSubstr("say --gate lidar=9\n"));
+  EXPECT_THAT(notes(1.5, analysis::chi_squared_quantile(0.95, 2.0)),
+              HasSubstr("say --gate lidar=95%\n"));
+  for (const double factor : {0.5, 1.0, 3.0})
+    EXPECT_THAT(notes(factor, 1e9), Not(HasSubstr("--gate"))) << factor;
 }
 
 // Rows of one time are summed up, with the deviation of their sum.
@@ -218,6 +278,37 @@ TEST_F(JudgeInnovations, OfOneRunHaveABias) {
   write("i_0.csv", text);
   const Called called = judged({"i_0.csv"}, {"--innovations"});
   EXPECT_THAT(called.out, AllOf(HasSubstr("gap has a bias"), Not(HasSubstr("runs bias"))));
+}
+
+// The size of this drive is known by the law of white innovations, which says less of other drives.
+TEST_F(JudgeInnovations, OfOneWhiteDriveHaveASizeOfTheirOwn) {
+  std::string text = "time_s,gap_m,turn_rad,cov_0_0,cov_0_1,cov_1_1\n";
+  RngStream draw({18, 0, 0, 0, Draw::test});
+  for (int k = 0; k < 1500; ++k) {
+    text += std::to_string(k) + "," + to_text(draw.normal()) + "," + to_text(0.1 * draw.normal()) +
+            ",1,0,0.01\n";
+  }
+  std::filesystem::create_directories(folder_ / "1");
+  write("1/i.csv", text);
+  const Called called = judged({"1/i.csv"}, {"--innovations"});
+  EXPECT_THAT(called.out, AllOf(HasSubstr("NIS ratio [97.5 %]"), Not(HasSubstr("NEES")),
+                                ContainsRegex("over[ \n]+many[ \n]+drives")));
+  const ResultFile file(folder_ / "mine.h5");
+  EXPECT_EQ(file.runs(), std::vector<std::uint64_t>{0}) << "a folder's bare number is no run";
+  const auto study = analysis::analyze(file, 0.95);
+  const analysis::Verdict& found = study.cells.front().verdict;
+  EXPECT_EQ(found.level, 0.975) << "whiteness and size are judged together";
+  EXPECT_EQ(found.answer, analysis::Answer::undecided);
+  EXPECT_LT(found.ratio().upper - found.ratio().lower, 0.2);
+  EXPECT_GT(found.over_drives.upper, found.ratio().upper + 0.2);
+  EXPECT_EQ(found.find(analysis::Family::component)->members.size(), 2U);
+}
+
+TEST_F(JudgeInnovations, AndArraysOfNumPyHaveARemedy) {
+  write("err.npy", "\x93NUMPY");
+  EXPECT_THAT(judged({"err.npy", "cov.npy"}, {}).err,
+              AllOf(HasSubstr("err.npy: a NumPy array"), HasSubstr("montecarta.judge"),
+                    HasSubstr("h5py.File")));
 }
 
 }  // namespace
