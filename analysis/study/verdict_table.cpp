@@ -70,7 +70,7 @@ std::vector<TextTable::Entry> consistency_row(const CellAnalysis& cell, const Ne
       {"covariance", name_of(nees.moments), Align::left},
       {"ANEES", compact(nees.mean)},
       {"NEES ratio [" + level_text(level) + "]",
-       with_interval(nees.mean / d, {average.lower / d, average.upper / d})},
+       ratio_with_interval(nees.mean / d, {average.lower / d, average.upper / d})},
       {"ideal", readable(ideal_nees(cell, nees))},
       {level_text(level) + " band", band_text(cell, nees.series.dimension, level)}};
   add_entries(kNeesQuantities, nees, level, row);
@@ -118,7 +118,7 @@ Frame::Row numbers_of(const CellAnalysis& cell, const NeesResult& nees, double l
 
 std::string ratio_text_of(const Verdict& verdict) {
   if (verdict.beside.repeated_runs > 0) return "-";
-  return with_interval(verdict.ratio_estimate(), verdict.ratio());
+  return ratio_with_interval(verdict.ratio_estimate(), verdict.ratio());
 }
 
 std::string ratio_text(const CellAnalysis& cell) {
