@@ -32,6 +32,7 @@ class HintsOverRuns final : public MergedSums<HintsOverRuns> {
     NeesBy<kErrorConventions.size()> by_convention = error.nees_by;
     if (by_convention.front().empty()) by_convention.front() = nees_of(error);  // of a vector
     hints_->add(by_convention, nees_by_mistake(error, criteria_->units));
+    hints_->add_variances(error, criteria_->units);
   }
   void put(CellAnalysis& cell) override {
     if (!hints_) return;

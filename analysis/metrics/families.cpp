@@ -21,7 +21,8 @@ TextTable family_table(const StudyAnalysis& study) {
                  {"p", readable(test.p, 2)},
                  {"farthest from right", name_of(member), Align::left},
                  {"estimate [" + level_text(study.level) + "]",
-                  with_interval(member.estimate, member.interval)},
+                  is_ratio(test.family) ? ratio_with_interval(member.estimate, member.interval)
+                                        : with_interval(member.estimate, member.interval)},
                  {"shown", test.is_rejected ? "yes" : "no", Align::left}});
     }
   }

@@ -105,8 +105,8 @@ void innovations_series(const CellAnalysis& cell, std::vector<Frame::Column>& al
 std::string largest_text(const LargestInnovation& largest) {
   const std::string components = std::to_string(std::llround(largest.dof));
   return compact(largest.nis) + " of " + components +
-         (largest.dof == 1.0 ? " component at " : " components at ") + clock_text(largest.time) +
-         " of run " + std::to_string(largest.run);
+         (largest.dof == 1.0 ? " component at " : " components at ") +
+         time_text(largest.time, largest.origin) + " of run " + std::to_string(largest.run);
 }
 
 std::vector<TextTable::Entry> innovation_row(const CellAnalysis& cell, double level) {
@@ -218,7 +218,7 @@ std::vector<Section::Block> leads_of(const StudyAnalysis& study) {
     }
     std::string words = cell.label + ", innovations: " + whiteness_in_words(*found);
     if (found->judges_size()) {
-      words += "; NIS per component " + with_interval(found->ratio, found->verdict.ratio()) +
+      words += "; NIS per component " + ratio_with_interval(found->ratio, found->verdict.ratio()) +
                ", where 1 is right";
     }
     words += correlated_words(*found, study.imported.components);

@@ -24,4 +24,8 @@ std::string interval_text(const Interval& interval);
 /// significant digit of the interval's half width; the mean alone where there is no interval.
 std::string with_interval(double mean, const Interval& interval);
 
+/// Text of a ratio with its interval, likewise, but with three significant digits of the ratio or
+/// more: "1.96 [1.61, 24.21]".
+std::string ratio_with_interval(double ratio, const Interval& interval);
+
 }  // namespace montecarta::analysis

@@ -75,7 +75,7 @@ std::vector<TextTable::Entry> consistency_row(const StudyAnalysis& study, const 
       {"error", name_of(nees.block), Align::left},
       {"covariance", name_of(nees.moments), Align::left},
       {"ANEES", compact(nees.mean)},
-      {ratio_heading(study), with_interval(ratio, average)},
+      {ratio_heading(study), ratio_with_interval(ratio, average)},
       {"ideal", readable(ideal_nees(cell, nees))},
       {level_text(study.level) + " band", band_text(cell, nees.series.dimension, study.level)}};
   add_entries(kNeesQuantities, nees, study.level, row);
@@ -129,7 +129,7 @@ std::string ratio_heading(const StudyAnalysis& study) {
 
 std::string ratio_text_of(const Verdict& verdict) {
   if (verdict.beside.repeated_runs > 0) return "-";
-  return with_interval(verdict.ratio_estimate(), verdict.ratio());
+  return ratio_with_interval(verdict.ratio_estimate(), verdict.ratio());
 }
 
 std::string ratio_text(const CellAnalysis& cell) {

@@ -24,14 +24,6 @@ std::string comma_joined(const std::vector<std::string>& parts) {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-/// Returns whether components are all positions [m], then angles [rad].
-bool are_positions_then_angles(std::span<const std::string> units) {
-  const auto first_angle = std::ranges::find(units, "rad");
-  return first_angle != units.begin() && first_angle != units.end() &&
-         std::all_of(units.begin(), first_angle, [](const auto& unit) { return unit == "m"; }) &&
-         std::all_of(first_angle, units.end(), [](const auto& unit) { return unit == "rad"; });
-}
-
 /// {scan} NEES of errors whose covariances are corrected.
 template <class Correct>
 std::vector<double> nees_with(const ErrorRows& errors, const Correct& correct) {
@@ -43,9 +35,9 @@ std::vector<double> nees_with(const ErrorRows& errors, const Correct& correct) {
   return nees;
 }
 
-std::string with_ratio(const char* name, const Verdict& found) {
+std::string with_ratio(const std::string& name, const Verdict& found) {
   if (std::isnan(found.ratio_estimate())) return name;  // of too few runs
-  return std::string(name) + " (NEES ratio " + compact(found.ratio_estimate()) + ")";
+  return name + " (NEES ratio " + compact(found.ratio_estimate()) + ")";
 }
 
 /// The mistakes that would explain why the errors do not fit as stated.
@@ -54,24 +46,44 @@ std::string mistakes_in_words(const ConventionHint& hint) {
   for (std::size_t k = 0; k < hint.by_mistake.size(); ++k) {
     const Verdict& found = hint.by_mistake[k];
     if (found.answer == Answer::untested || !fits_errors(found)) continue;
-    fitting.push_back(with_ratio(kLayoutMistakes[k], found));
+    fitting.push_back(with_ratio(name_of(kTestedMistakes[k]), found));
   }
-  if (fitting.empty()) return "";
+  if (fitting.empty()) return in_words(hint.mistakes);
   return "The covariances may be written with " + comma_joined(fitting) +
          ", by which they would not have been rejected";
 }
 
+/// A clause on the rejected conventions whose NEES ratio is nearer to 1 than the stated one by a
+/// factor of ten or more; empty without any.
+std::string far_nearer_in_words(const ConventionHint& hint, const std::string& said) {
+  constexpr double kFactor = 10.0;
+  const auto distance = [&](std::size_t k) {
+    return std::abs(std::log(hint.by_convention[k].ratio_estimate()));
+  };
+  std::size_t stated = 0;
+  while (stated < hint.by_convention.size() && kErrorConventions[stated].name != said) ++stated;
+  if (stated == hint.by_convention.size()) return "";
+  std::vector<std::string> nearer;
+  for (std::size_t k = 0; k < hint.by_convention.size(); ++k) {
+    const Verdict& found = hint.by_convention[k];
+    if (found.answer == Answer::untested || fits_errors(found)) continue;
+    if (distance(k) <= distance(stated) - std::log(kFactor))
+      nearer.emplace_back(kErrorConventions[k].name);
+  }
+  if (nearer.empty()) return "";
+  return "; far nearer to 1 than the ratio " +
+         compact(hint.by_convention[stated].ratio_estimate()) + " of " + said + " is that of " +
+         comma_joined(nearer);
+}
+
 }  // namespace
 
-NeesBy<kLayoutMistakes.size()> nees_by_mistake(const ErrorRows& errors,
+NeesBy<kTestedMistakes.size()> nees_by_mistake(const ErrorRows& errors,
                                                std::span<const std::string> units) {
-  NeesBy<kLayoutMistakes.size()> nees;
+  NeesBy<kTestedMistakes.size()> nees;
   const auto angles = static_cast<std::size_t>(std::ranges::count(units, "rad"));
   if (units.size() != errors.components() || angles == 0) return nees;
-  std::vector<Eigen::Index> order(units.size());
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    order[i] = static_cast<Eigen::Index>((i + angles) % order.size());
-  }
+  const std::vector<Eigen::Index> order = rotation_first_order(units);
   if (are_positions_then_angles(units)) {
     nees[0] = nees_with(errors,
                         [&](const Eigen::MatrixXd& P) { return Eigen::MatrixXd(P(order, order)); });
@@ -92,10 +104,10 @@ NeesBy<kLayoutMistakes.size()> nees_by_mistake(const ErrorRows& errors,
 
 ConventionHints::ConventionHints(std::size_t components, std::size_t scans)
     : components_(static_cast<double>(components)),
-      nees_(kErrorConventions.size() + kLayoutMistakes.size(), SummedError(scans)) {}
+      nees_(kErrorConventions.size() + kTestedMistakes.size(), SummedError(scans)) {}
 
 void ConventionHints::add(const NeesBy<kErrorConventions.size()>& by_convention,
-                          const NeesBy<kLayoutMistakes.size()>& by_mistake) {
+                          const NeesBy<kTestedMistakes.size()>& by_mistake) {
   ++runs_;
   for (std::size_t k = 0; k < nees_.size(); ++k) {
     const std::vector<double>& nees =
@@ -111,6 +123,7 @@ ConventionHint ConventionHints::result(std::span<const double> times, double lev
     (k < kErrorConventions.size() ? hint.by_convention : hint.by_mistake)
         .push_back(judge(nees_[k].families(level, times), level, within, runs_));
   }
+  hint.mistakes = mistakes_;
   return hint;
 }
 
@@ -144,6 +157,7 @@ std::string in_words(const ConventionHint& hint, const std::string& cell, const 
     words += said_fits ? ": this study cannot tell those that pass apart"
                        : ": are they of another error than was said? If not, they pass by chance";
   }
+  if (!said_fits) words += far_nearer_in_words(hint, said);
   return mistakes.empty() ? words : words + ". " + mistakes;
 }
 

@@ -3,6 +3,7 @@
 
 #include "analysis/run/run_rows.hpp"
 #include "analysis/statistics/sums.hpp"
+#include "analysis/verdict/layout_mistakes.hpp"
 #include "analysis/verdict/summed_error.hpp"
 #include "analysis/verdict/verdict.hpp"
 #include "engine/records/columns.hpp"
@@ -17,29 +18,28 @@
 
 namespace montecarta::analysis {
 
-/// Mistakes in the layout of a covariance, after which it may fit the errors as it should.
-inline constexpr std::array kLayoutMistakes = {
-    "rotation before position",  ///< the components of the covariance begin with the rotation
-    "angles in degrees",         ///< its angles are in degrees
-    "angles in rad where those of estimates and truths are in degrees"};
+/// The mistakes in the layout of a covariance after whose correction errors are tested.
+inline constexpr std::array kTestedMistakes = {LayoutMistake::rotation_first,
+                                               LayoutMistake::degrees, LayoutMistake::radians};
 
 /// Verdicts on the imported estimates of a cell, one for each convention of the error and one for
 /// each mistake in the layout.
 struct ConventionHint {
   /// {kErrorConventions} verdicts, untested for conventions that do not apply.
   std::vector<Verdict> by_convention;
-  /// {kLayoutMistakes} verdicts under the stated convention, untested for mistakes that do not
+  /// {kTestedMistakes} verdicts under the stated convention, untested for mistakes that do not
   /// apply.
   std::vector<Verdict> by_mistake = {};
+  LayoutMistakes mistakes = {};  ///< how near they bring the variances to the errors
 };
 
 /// NEES by convention or by mistake, and then by scan; empty where it does not apply.
 template <std::size_t N>
 using NeesBy = std::array<std::vector<double>, N>;
 
-/// {kLayoutMistakes}{scan} The NEES of imported errors whose components have these units, if the
+/// {kTestedMistakes}{scan} The NEES of imported errors whose components have these units, if the
 /// layout of their covariances has the mistake.
-NeesBy<kLayoutMistakes.size()> nees_by_mistake(const ErrorRows& errors,
+NeesBy<kTestedMistakes.size()> nees_by_mistake(const ErrorRows& errors,
                                                std::span<const std::string> units);
 
 /// Adds up the NEES of runs under every convention and every mistake.
@@ -51,19 +51,25 @@ class ConventionHints {
 
   /// Adds the NEES of one run.
   void add(const NeesBy<kErrorConventions.size()>& by_convention,
-           const NeesBy<kLayoutMistakes.size()>& by_mistake = {});
+           const NeesBy<kTestedMistakes.size()>& by_mistake = {});
+  /// Adds the variances of one run, whose components have these units.
+  void add_variances(const ErrorRows& errors, std::span<const std::string> units) {
+    mistakes_.add(errors, units);
+  }
   /// Verdicts by size and scans at `level`; `times` [s] of the scans.
   ConventionHint result(std::span<const double> times, double level, double within) const;
   static constexpr auto parts() {
-    return std::tuple(settings(&ConventionHints::components_),
-                      added(&ConventionHints::runs_, &ConventionHints::nees_));
+    return std::tuple(
+        settings(&ConventionHints::components_),
+        added(&ConventionHints::runs_, &ConventionHints::nees_, &ConventionHints::mistakes_));
   }
 
  private:
   double components_ = 0.0;
   std::uint64_t runs_ = 0;
-  /// {kErrorConventions, then kLayoutMistakes} sums of the NEES
+  /// {kErrorConventions, then kTestedMistakes} sums of the NEES
   std::vector<SummedError> nees_;
+  LayoutMistakes mistakes_;
 };
 
 /// A text that names the conventions other than `said` that fit the covariances of `cell`, those

@@ -166,6 +166,7 @@ Innovations InnovationSums::result(std::span<const double> times, double level, 
                     .dof = static_cast<double>(largest_->dof[largest_->scan]),
                     .run = largest_->run,
                     .time = largest_->time,
+                    .origin = origin_of(times),
                     .ratio_without = rest.ratio,
                     .whiteness_without = rest.whiteness_of_nis(),
                     .answer_without = rest.verdict.answer};

@@ -39,7 +39,8 @@ struct LargestInnovation {
   double nis = kNaN;
   double dof = kNaN;
   std::uint64_t run = 0;
-  double time = kNaN;  ///< [s] time of the scan
+  double time = kNaN;   ///< [s] time of the scan
+  double origin = 0.0;  ///< [s] time that readers count from: origin_of() all scans
   double ratio_without = kNaN;
   Whiteness whiteness_without = Whiteness::untested;
   Answer answer_without = Answer::untested;

@@ -125,9 +125,10 @@ std::string when(const Verdict& verdict, Side direction) {
   if (gap == shown.size() && to_end && from_start) return "in every eighth of the drive";
   if (verdict.beside.p_of_equal_stretches > 1.0 - verdict.level) return "";
   if (gap != shown.size()) return "at some times more than at others";
-  if (to_end) return "from " + clock_text(shown.front()->from) + " on";
-  if (from_start) return "until " + clock_text(shown.back()->to);
-  return "from " + clock_text(shown.front()->from) + " to " + clock_text(shown.back()->to);
+  const double origin = shown.front()->origin, from = shown.front()->from, to = shown.back()->to;
+  if (to_end) return "from " + time_text(from, origin) + " on";
+  if (from_start) return "until " + time_text(to, origin);
+  return "from " + clock_text(from - origin) + " to " + time_text(to, origin);
 }
 
 double distance_of(const Member& ratio) { return std::abs(std::log(ratio.estimate)); }

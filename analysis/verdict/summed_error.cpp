@@ -125,7 +125,8 @@ std::vector<MemberTest> SummedError::scan_tests(std::span<const double> times) c
     const Scan& scan = scans_[s];
     if (!(scan.dimensions > 0.0) || is_rounded_away(scan)) continue;
     const Summary runs = scan.runs.result();
-    Member member{.from = times[s], .to = times[s], .estimate = scan.ratio()};
+    Member member{
+        .from = times[s], .to = times[s], .origin = origin_of(times), .estimate = scan.ratio()};
     all.push_back(with_runs(exact_test(Family::scan, std::move(member), scan.dimensions, law),
                             RunMean::of_ratio(runs, skewness), runs.n));
   }
@@ -160,7 +161,9 @@ std::vector<FamilyTest> SummedError::white_families(double level,
   const std::vector<std::size_t> ends = ends_of_stretches(scans_.size());
   for (std::size_t k = 0; k < ends.size() && ends.size() > 1; ++k) {
     const std::size_t first = k == 0 ? 0 : ends[k - 1];
-    add_sum(Family::stretch, {.from = times[first], .to = times[ends[k] - 1]}, first, ends[k]);
+    add_sum(Family::stretch,
+            {.from = times[first], .to = times[ends[k] - 1], .origin = origin_of(times)}, first,
+            ends[k]);
   }
   return judge_tests(std::move(all), level);
 }

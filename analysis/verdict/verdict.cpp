@@ -14,6 +14,12 @@
 
 namespace montecarta::analysis {
 
+namespace {
+
+std::string after_start(double origin) { return origin == 0.0 ? "" : " after the start"; }
+
+}  // namespace
+
 std::string name_of(Family family) {
   constexpr std::array kNames = {
       "size", "component",       "stretch",     "component by stretch",   "scan",
@@ -28,11 +34,21 @@ std::string key_of(Family family) {
   return key;
 }
 
+double origin_of(std::span<const double> times) {
+  constexpr double kLeastClock = 1e6;  // [s] 12 days
+  return times.empty() || std::abs(times.front()) < kLeastClock ? 0.0 : times.front();
+}
+
+std::string time_text(double time, double origin) {
+  return clock_text(time - origin) + after_start(origin);
+}
+
 std::string name_of(const Member& member) {
   if (std::isnan(member.from)) return member.name;
   const bool is_scan = member.from == member.to;
-  std::string time = is_scan ? "at " + fixed_seconds(member.from)
-                             : clock_text(member.from) + " to " + clock_text(member.to);
+  const double from = member.from - member.origin;
+  std::string time = is_scan ? "at " + fixed_seconds(from) + after_start(member.origin)
+                             : clock_text(from) + " to " + time_text(member.to, member.origin);
   if (member.name.empty()) return time;
   return member.name + (is_scan ? " " : " from ") + time;
 }

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -66,6 +67,7 @@ std::string key_of(Family family);
 struct Member {
   std::string name = {};  ///< "heading", "forward and left"; empty if the times name the member
   double from = kNaN, to = kNaN;  ///< [s] first and last time of a stretch or a scan
+  double origin = 0.0;            ///< [s] time that readers count from: origin_of() all times
   double estimate = kNaN;  ///< estimated ratio, or number that is zero for a consistent filter
   Interval interval = {kNaN, kNaN};  ///< interval of this member alone
   /// Interval that holds for all members of all families together.
@@ -74,6 +76,12 @@ struct Member {
   Interval shown = {kNaN, kNaN};
   double p = kNaN;  ///< two-sided p-value of this member alone
 };
+
+/// The time [s] from which readers count the times of scans: their first one if they are those of a
+/// clock, which have ten digits, else 0.
+double origin_of(std::span<const double> times);
+/// Text of a time [s] counted from `origin`: "12.4 s", or "12.4 s after the start".
+std::string time_text(double time, double origin);
 
 /// Name of a member for readers: "heading", "12 s to 24 s", "at 12.4 s".
 std::string name_of(const Member& member);

@@ -223,6 +223,7 @@ Member WholeError::in_stretch(std::string name, std::size_t stretch,
   Member member{.name = std::move(name)};
   member.from = names.times[first_scan(stretch)];
   member.to = names.times[ends_[stretch] - 1];
+  member.origin = origin_of(names.times);
   return member;
 }
 
@@ -306,6 +307,7 @@ void WholeError::add_largest_test(const ErrorNames& names, std::vector<MemberTes
                         std::to_string(largest_.place.run),
                 .estimate = largest_.deviations};
   member.from = member.to = names.times[largest_.place.scan];
+  member.origin = origin_of(names.times);
   member.p = std::min(1.0, 2.0 * tail * static_cast<double>(largest_.samples));
   all.push_back({Family::tails, std::move(member), [](double) { return Interval{kNaN, kNaN}; }});
 }

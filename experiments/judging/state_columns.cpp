@@ -51,6 +51,14 @@ void refuse_other_time(const std::string& column, const std::string& place) {
 
 void check_header(const Names& header, const std::string& place) {
   refuse_other_time(header.front(), place);
+  if (to_number(header.front())) {
+    throw StudyError(
+        "{}: the row begins with the number {}, where a header with the names of the columns is "
+        "expected (a line that begins with # is a comment, so that names behind it are not read): "
+        "begin the header with time_s, without #, or convert the file by "
+        "experiments/convert/estimates.py",
+        place, excerpt(header.front()));
+  }
   if (header.front() != kTimeColumn) {
     throw StudyError(
         "{}: '{}' is not the first column (times come first): begin the header with time_s, or "

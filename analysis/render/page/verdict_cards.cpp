@@ -107,8 +107,11 @@ struct Sparkline {
   std::string bars_of(const FamilyTest& test) const {
     constexpr double kLeastWidth = 2.0;
     const bool is_scan = test.family == Family::scan;
-    const auto words = [&](double t) { return is_scan ? fixed_seconds(t) : clock_text(t); };
     const auto& all = test.members;
+    const auto words = [&](double t) {
+      const double since = t - all.front().origin;
+      return is_scan ? fixed_seconds(since) : clock_text(since);
+    };
     std::string path, from, to;
     for (std::size_t k = 0; k < all.size(); ++k) {
       if (!test.is_shown(all[k])) continue;

@@ -84,6 +84,11 @@ TEST(NumberText, IsShortAndSaysWhatItMeasured) {
   EXPECT_EQ(with_interval(272632.0, {1.0, 500000.0}), "2.73e5 [1.00, 5.00e5]");
   EXPECT_EQ(with_interval(3.58e-14, {3.3e-14, 3.8e-14}), "3.6e-14 [3.3e-14, 3.8e-14]");
   EXPECT_EQ(with_interval(-0.0002, {-0.04, 0.04}), "0.000 [-0.040, 0.040]");
+  EXPECT_EQ(ratio_with_interval(1.9621, {1.612, 24.21}), "1.96 [1.61, 24.21]");
+  EXPECT_EQ(ratio_with_interval(0.9162, {0.828, 1.052}), "0.916 [0.828, 1.052]");
+  EXPECT_EQ(ratio_with_interval(1.00312, {0.99811, 1.00812}), "1.0031 [0.9981, 1.0081]");
+  EXPECT_EQ(ratio_with_interval(182.3, {160.2, 216.8}), "182 [160, 217]");
+  EXPECT_EQ(ratio_with_interval(0.0, {0.0, 0.5}), "0.00 [0.00, 0.50]");
   EXPECT_EQ(percent(0.9456), "94.6 %");
   EXPECT_EQ(level_text(0.95), "95 %");
   EXPECT_EQ(level_text(0.999), "99.9 %");

@@ -154,6 +154,18 @@ TEST(Judge, TakesHeavyTailsForNoFaultOfTheCovariance) {
       Answer::undecided);
 }
 
+TEST(Members, CountTheTimesOfAClockFromTheStart) {
+  const std::vector<double> drive = {0.5, 60.0}, clock = {1403636579.75, 1403636598.5};
+  EXPECT_EQ(origin_of(drive), 0.0);
+  EXPECT_EQ(name_of(Member{.from = 0.5, .to = 60.0, .origin = origin_of(drive)}),
+            "0.500 s to 60.0 s");
+  const double origin = origin_of(clock);
+  EXPECT_EQ(name_of(Member{.name = "rz", .from = clock[0], .to = clock[1], .origin = origin}),
+            "rz from 0.00 s to 18.8 s after the start");
+  EXPECT_EQ(name_of(Member{.from = clock[1], .to = clock[1], .origin = origin}),
+            "at 18.8 s after the start");
+}
+
 TEST(JudgeTogether, CorrectsForMembersAndFamilies) {
   FamilyTest one = size({0.9, 1.1}), two = stretches({kRight, kRight, kRight, kRight});
   one.members[0].p = 0.03;

@@ -316,6 +316,7 @@ std::string hint_on_layout(const std::vector<std::string>& units, const Eigen::M
           analysis::imported_nees(errors.error(s), errors.covariance_of(s)).value);
     }
     hints.add(by_convention, analysis::nees_by_mistake(errors, units));
+    hints.add_variances(errors, units);
   }
   const std::vector<double> times = analysis::scan_times(kScans, 0.2);
   return in_words(hints.result(times, 0.95, 1.1), "mine", "world");
@@ -344,6 +345,51 @@ TEST(ConventionHints, NameMistakesInTheLayout) {
     EXPECT_EQ(hint_on_layout(shape.units, P, P), "");
     EXPECT_EQ(hint_on_layout(shape.units, P, 1e4 * P), "") << "merely conservative";
   }
+}
+
+// A mistake that explains most of a wrong size is named although the rest is rejected too.
+TEST(ConventionHints, NameMistakesThatBringTheErrorsFarNearer) {
+  const StateShape shape = space_shape();
+  Eigen::VectorXd deviations(6);
+  deviations << 0.5, 0.4, 0.6, 0.01, 0.02, 0.01;
+  const Eigen::MatrixXd P = deviations.cwiseAbs2().asDiagonal();
+  Eigen::VectorXd claimed = deviations;
+  claimed.head<3>() /= 1.6;  // optimistic, whatever the layout is
+  const auto hint_for = [&](const Eigen::VectorXd& variances) {
+    return hint_on_layout(shape.units, P, variances.asDiagonal());
+  };
+  const Eigen::VectorXd right = claimed.cwiseAbs2();
+  Eigen::VectorXd rotation_first(6), degrees = right, millimetres = right;
+  rotation_first << right.tail<3>(), right.head<3>();
+  degrees.tail<3>() *= std::pow(180.0 / kPi, 2);
+  millimetres.head<3>() *= 1e6;
+  const std::string far = "is far nearer to 1, whatever the verdict would be";
+  EXPECT_THAT(hint_for(rotation_first),
+              AllOf(HasSubstr("written with rotation before position,"), HasSubstr(far)));
+  EXPECT_THAT(hint_for(degrees), HasSubstr("written with angles in degrees,"));
+  EXPECT_THAT(hint_for(millimetres), HasSubstr("written with lengths in mm,"));
+  EXPECT_THAT(hint_for(claimed), HasSubstr("with standard deviations in place of variances,"));
+  EXPECT_EQ(hint_for(right), "");
+  EXPECT_EQ(hint_for(100.0 * right), "");
+  Eigen::VectorXd errors = P.diagonal(), variances = errors;  // rotations are wrong, of other cause
+  errors.tail<3>().setConstant(36.0);
+  variances.tail<3>().setConstant(1e-3);
+  EXPECT_EQ(hint_on_layout(shape.units, errors.asDiagonal(), variances.asDiagonal()), "");
+}
+
+TEST(ConventionHints, NameConventionsThatBringTheErrorsFarNearer) {
+  ConventionHint hint = hint_of(plane_shape(), ErrorConvention::body, 1);
+  const auto with_ratio = [&](double ratio) {
+    analysis::Verdict verdict = hint.by_convention[0];
+    for (analysis::FamilyTest& test : verdict.families) {
+      if (test.family == analysis::Family::size) test.members.front().estimate = ratio;
+    }
+    return verdict;
+  };
+  hint.by_convention = {with_ratio(182.0), with_ratio(1.7), with_ratio(40.0)};
+  EXPECT_THAT(in_words(hint, "mine", "world"),
+              HasSubstr("far nearer to 1 than the ratio 182 of world is that of body"));
+  EXPECT_THAT(in_words(hint, "mine", "body"), Not(HasSubstr("far nearer")));
 }
 
 TEST(ConventionHints, SayWhatCannotBeToldApart) {

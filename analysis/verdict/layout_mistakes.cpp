@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/verdict/layout_mistakes.hpp"
+
+#include "analysis/run/nees.hpp"
+#include "engine/formatted.hpp"
+#include "engine/text/number_text.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+namespace montecarta::analysis {
+namespace {
+
+constexpr std::array<const char*, kLayoutMistakes> kNamesOfMistakes = {
+    "rotation before position", "angles in degrees",
+    "angles in rad where those of estimates and truths are in degrees", "lengths in mm",
+    "standard deviations in place of variances"};
+
+/// How the variance of a component follows from those that are stated.
+struct Correction {
+  std::vector<Eigen::Index> from;  ///< {component} the one whose place it has; empty: no part
+  std::vector<double> factor;      ///< {component}
+  bool is_squared = false;
+
+  double variance(const double* covariance, std::size_t i) const {
+    const auto k = static_cast<std::size_t>(from[i]);
+    const double stated = covariance[k * from.size() + k];
+    return factor[i] * (is_squared ? stated * stated : stated);
+  }
+};
+
+/// {as stated, then without each mistake} for components with these units.
+std::array<Correction, 1 + kLayoutMistakes> corrections_of(std::span<const std::string> units) {
+  constexpr double kDegreeInRad = std::numbers::pi / 180.0, kMillimetre = 1e-3;
+  Correction stated{.from = std::vector<Eigen::Index>(units.size()),
+                    .factor = std::vector<double>(units.size(), 1.0)};
+  std::iota(stated.from.begin(), stated.from.end(), Eigen::Index{0});
+  const auto scaled = [&](const char* unit, double factor) {
+    Correction found = stated;
+    for (std::size_t i = 0; i < units.size(); ++i)
+      if (units[i] == unit) found.factor[i] = factor * factor;
+    return found;
+  };
+  Correction rotation_first = stated, deviations = stated;
+  rotation_first.from =
+      are_positions_then_angles(units) ? rotation_first_order(units) : std::vector<Eigen::Index>();
+  deviations.is_squared = true;
+  return {stated,
+          rotation_first,
+          scaled("rad", kDegreeInRad),
+          scaled("rad", 1.0 / kDegreeInRad),
+          scaled("m", kMillimetre),
+          deviations};
+}
+
+}  // namespace
+
+std::string name_of(LayoutMistake mistake) {
+  return kNamesOfMistakes.at(static_cast<std::size_t>(mistake));
+}
+
+bool are_positions_then_angles(std::span<const std::string> units) {
+  const auto first_angle = std::ranges::find(units, "rad");
+  return first_angle != units.begin() && first_angle != units.end() &&
+         std::all_of(units.begin(), first_angle, [](const auto& unit) { return unit == "m"; }) &&
+         std::all_of(first_angle, units.end(), [](const auto& unit) { return unit == "rad"; });
+}
+
+std::vector<Eigen::Index> rotation_first_order(std::span<const std::string> units) {
+  const auto angles = static_cast<std::size_t>(std::ranges::count(units, "rad"));
+  std::vector<Eigen::Index> order(units.size());
+  for (std::size_t i = 0; i < order.size(); ++i)
+    order[i] = static_cast<Eigen::Index>((i + angles) % order.size());
+  return order;
+}
+
+double PartRatios::distance() const {
+  return std::max(std::abs(std::log(lengths)), std::abs(std::log(angles)));
+}
+
+void LayoutMistakes::add(const ErrorRows& errors, std::span<const std::string> units) {
+  const std::size_t d = units.size();
+  if (d != errors.components()) return;
+  const auto corrections = corrections_of(units);
+  for (std::size_t s = 0; s < errors.scans(); ++s) {
+    const double* const covariance = errors.covariance.data() + s * d * d;
+    for (std::size_t i = 0; i < d; ++i) {
+      const bool is_length = units[i] == "m";
+      if (!is_length && units[i] != "rad") continue;
+      const double error = errors.value[s * d + i];
+      for (std::size_t k = 0; k < corrections.size(); ++k) {
+        if (corrections[k].from.empty()) continue;
+        const double variance = corrections[k].variance(covariance, i);
+        const double square = error * error / variance;
+        if (!(variance > 0.0) || !std::isfinite(square)) continue;
+        Part& part = sums_[k][is_length ? 0 : 1];
+        part.squares += std::min(square, kLargestNees);
+        part.n += 1.0;
+      }
+    }
+  }
+}
+
+PartRatios LayoutMistakes::ratios(std::size_t k) const {
+  const auto mean = [](const Part& part) { return part.squares / part.n; };
+  return {mean(sums_[k][0]), mean(sums_[k][1])};
+}
+
+std::optional<LayoutMistake> LayoutMistakes::far_nearer() const {
+  const auto is_farther = [](double ratio, double stated) {
+    constexpr double kNear = 3.0;
+    const double distance = std::abs(std::log(ratio));
+    return distance > std::log(kNear) && distance > std::abs(std::log(stated));
+  };
+  constexpr double kFactor = 10.0;
+  double least = stated().distance() - std::log(kFactor);
+  std::optional<LayoutMistake> nearest;
+  for (std::size_t k = 0; k < kLayoutMistakes; ++k) {
+    const auto mistake = static_cast<LayoutMistake>(k);
+    const double distance = without(mistake).distance();
+    if (!std::isfinite(distance) || !(distance <= least))
+      continue;  // also if there are no lengths, or no angles
+    if (is_farther(without(mistake).lengths, stated().lengths)) continue;
+    if (is_farther(without(mistake).angles, stated().angles)) continue;
+    least = distance;
+    nearest = mistake;
+  }
+  return nearest;
+}
+
+std::string in_words(const LayoutMistakes& mistakes) {
+  const auto mistake = mistakes.far_nearer();
+  if (!mistake) return "";
+  const PartRatios stated = mistakes.stated(), without = mistakes.without(*mistake);
+  return engine::formatted(
+      "If the covariances are written with {}, squared errors of lengths are {} times their "
+      "variances and those of angles {} times, instead of {} and {} times, which is far nearer to "
+      "1, whatever the verdict would be",
+      name_of(*mistake), compact(without.lengths), compact(without.angles), compact(stated.lengths),
+      compact(stated.angles));
+}
+
+}  // namespace montecarta::analysis

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/run/run_rows.hpp"
+#include "analysis/statistics/sums.hpp"
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <tuple>
+#include <vector>
+
+namespace montecarta::analysis {
+
+/// What a covariance may be by mistake.
+enum class LayoutMistake : std::uint8_t {
+  rotation_first,  ///< its components begin with the rotation
+  degrees,         ///< its angles are in degrees
+  radians,         ///< its angles are in rad, and those of estimates and truths in degrees
+  millimetres,     ///< its lengths are in millimetres
+  deviations       ///< its diagonal has standard deviations
+};
+inline constexpr std::size_t kLayoutMistakes = 5;
+
+/// "rotation before position", "angles in degrees", ...
+std::string name_of(LayoutMistake mistake);
+
+/// Returns whether components are all positions [m], then angles [rad].
+bool are_positions_then_angles(std::span<const std::string> units);
+/// {component} The component whose place in the covariance this one has, if the rotation is first.
+std::vector<Eigen::Index> rotation_first_order(std::span<const std::string> units);
+
+/// Squared errors over their variances, averaged over samples: 1 is right.
+struct PartRatios {
+  double lengths, angles;  ///< of components in m and in rad
+
+  /// How far the farther one is from 1: the logarithm of a factor.
+  double distance() const;
+};
+
+/// Squared errors of lengths and of angles beside their variances as stated, and as they would be
+/// without each mistake.
+class LayoutMistakes {
+ public:
+  /// Adds a run of errors whose components have these units.
+  void add(const ErrorRows& errors, std::span<const std::string> units);
+  /// The ratios as stated.
+  PartRatios stated() const { return ratios(0); }
+  PartRatios without(LayoutMistake mistake) const {
+    return ratios(1 + static_cast<std::size_t>(mistake));
+  }
+  /// The mistake without which ratios are nearest to 1, if the farther one is nearer by a factor of
+  /// ten or more, and none is farther than as stated (or than 3).
+  std::optional<LayoutMistake> far_nearer() const;
+  static constexpr auto parts() { return std::tuple(added(&LayoutMistakes::sums_)); }
+
+ private:
+  struct Part {
+    double squares = 0.0, n = 0.0;
+    static constexpr auto parts() { return std::tuple(added(&Part::squares, &Part::n)); }
+  };
+  PartRatios ratios(std::size_t k) const;
+
+  /// {as stated, then without each mistake} of lengths, then of angles
+  std::vector<std::array<Part, 2>> sums_ = std::vector<std::array<Part, 2>>(1 + kLayoutMistakes);
+};
+
+/// "If the covariances are written with rotation before position, ...", about the mistake that
+/// far_nearer() finds; empty without one.
+std::string in_words(const LayoutMistakes& mistakes);
+
+}  // namespace montecarta::analysis
