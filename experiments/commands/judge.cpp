@@ -163,26 +163,31 @@ std::unique_ptr<EstimateSource> pair_of(const Arguments& arguments,
   return std::make_unique<EstimateFiles>(std::move(files), how);
 }
 
-/// The estimates that the operands name: CSV files, or one HDF5 file of arrays.
-std::unique_ptr<EstimateSource> source_of(const Arguments& arguments, JudgingOptions& options) {
-  const std::vector<std::string>& operands = arguments.operands();
-  if (h5::is_hdf5(operands.front())) return arrays_of(arguments);
-  const std::string ending = std::filesystem::path(operands.front()).extension().string();
+/// Throws StudyError if a file has arrays of a format that is not read.
+void refuse_other_arrays(const std::string& path) {
+  const std::string ending = std::filesystem::path(path).extension().string();
   if (ending == ".npy") {
     throw StudyError(
         "{}: a NumPy array (errors and covariances are read from one HDF5 file): call "
         "montecarta.judge(errors, covariances) in Python, or write the file by h5py: "
         "f = h5py.File(\"a.h5\", \"w\"); f[\"error\"] = errors; f[\"covariance\"] = covariances; "
         "f.close()",
-        operands.front());
+        path);
   }
   if (ending == ".h5" || ending == ".hdf5" || ending == ".mat" || ending == ".npz") {
     throw StudyError(
         "{}: is there no such file, or no HDF5 file (arrays are in one): give its name; convert "
         ".npz and a .mat of version 7 by experiments/convert/estimates.py, or call "
         "montecarta.judge from Python",
-        operands.front());
+        path);
   }
+}
+
+/// The estimates that the operands name: CSV files, or one HDF5 file of arrays.
+std::unique_ptr<EstimateSource> source_of(const Arguments& arguments, JudgingOptions& options) {
+  const std::vector<std::string>& operands = arguments.operands();
+  if (h5::is_hdf5(operands.front())) return arrays_of(arguments);
+  refuse_other_arrays(operands.front());
   if (arguments.has("names")) {
     throw StudyError("--names: needs an HDF5 file (a CSV file has a header): leave it out");
   }
