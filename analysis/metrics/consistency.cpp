@@ -160,6 +160,8 @@ Figure nees_figure(const StudyAnalysis& study, const std::vector<ErrorBlock>& bl
 Figure anees_figure(const StudyAnalysis& study) {
   const Values whole = {{"whole", study.imported.name_of_whole()}};
   Values curve = whole;
+  const bool is_of_innovations = study.imported.state == kInnovationsAlone;
+  curve.emplace_back("nees", is_of_innovations ? "NIS" : "NEES");
   curve.emplace_back("level", level_text(study.level));
   const bool is_bound = study.imported.has_bounds();
   return nees_figure(study, {ErrorBlock::pose}, prose("consistency", "strips of whole", whole),

@@ -496,7 +496,8 @@ std::string white_drives_words(const Verdict& verdict) {
          compact(verdict.ratio_estimate()) + " times what it claims (" + level_text(verdict.level) +
          ": " + range(verdict.ratio()) +
          "); an error that lasts for a whole drive, and is small on " + drives +
-         ", would not be seen: over many drives the ratio of every component is only known to be " +
+         ", would not be seen: over many drives the ratio, or that of a component, is only known "
+         "to be " +
          range(verdict.over_drives) + ", and not to be within " + exact_text(verdict.within);
 }
 

@@ -356,8 +356,9 @@ void take_for_upper_bounds(Verdict& verdict) {
 void take_for_white_drives(const Verdict& of_any_memory, Verdict& verdict) {
   Interval& range = verdict.over_drives;
   range = of_any_memory.ratio();
+  const bool is_within = is_inside(range, margin_of(Family::size, verdict.within));
   for (const FamilyTest& test : of_any_memory.families) {
-    if (test.family != Family::component) continue;
+    if (test.family != Family::component || !is_within) continue;  // the ratio of all leads
     for (const Member& member : test.members) {
       range = {std::min(range.lower, member.interval.lower),
                std::max(range.upper, member.interval.upper)};

@@ -180,7 +180,8 @@ struct Verdict {
   /// Whether errors are innovations, whose bias is judged beside it (Innovations::components).
   bool is_of_innovations = false;
   /// Interval of the ratio over many drives, of fewer than kFewestRunsOfAPlan runs whose errors are
-  /// white: ratio() is that of their own drives. NaN of others.
+  /// white: ratio() is that of their own drives. With those of components if it is within the
+  /// margin. NaN of others.
   Interval over_drives = {kNaN, kNaN};
 
   /// Whether something is shown to be off: neither consistent nor undecided nor untested.

@@ -41,7 +41,7 @@ std::string likely_gate(double largest, double freedom, double nearness) {
 
 void PassedInnovations::add(double nis, std::uint32_t components) {
   if (components == 0 || !std::isfinite(nis)) return;
-  Rows& rows = rows_[components];
+  NisSum& rows = rows_[components];
   ++rows.count;
   rows.sum += nis;
   rows.largest = std::max(rows.largest, nis);
@@ -49,7 +49,7 @@ void PassedInnovations::add(double nis, std::uint32_t components) {
 
 void PassedInnovations::add(const PassedInnovations& others) {
   for (const auto& [components, rows] : others.rows_) {
-    Rows& mine = rows_[components];
+    NisSum& mine = rows_[components];
     mine.count += rows.count;
     mine.sum += rows.sum;
     mine.largest = std::max(mine.largest, rows.largest);

@@ -26,12 +26,12 @@ class PassedInnovations {
   std::string sign_of_a_gate(const std::string& sensor) const;
 
  private:
-  struct Rows {
+  struct NisSum {
     std::uint64_t count = 0;
     double sum = 0.0, largest = 0.0;  ///< of the NIS
   };
   /// {number of components}
-  std::map<std::uint32_t, Rows> rows_;
+  std::map<std::uint32_t, NisSum> rows_;
 };
 
 }  // namespace montecarta::experiments
