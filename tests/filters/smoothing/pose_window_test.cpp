@@ -173,17 +173,19 @@ TEST(PoseWindow, FirstEstimatesDoNotLearnTheHeadingFromDetections) {
 }
 
 // Noise so large that steps with derivatives at first estimates diverge if taken in full.
-TEST(FixedLagSmoother, WithFirstEstimatesStaysNearTheTruthInMuchNoise) {
+TEST(FixedLagSmoother, WithFirstEstimatesStaysInTheWorldInMuchNoise) {
   for (std::uint64_t seed = 64; seed < 72; ++seed) {
     SmallWorldSettings settings{.seed = seed, .scans = 200};
-    settings.noise = {.control = {.sigma = {1.0, 10.0 * kPi / 180.0}},
-                      .sigma_range = 1.2,
-                      .sigma_bearing = 12.0 * kPi / 180.0};
+    settings.noise = {.control = {.sigma = {2.0, 10.0 * kPi / 180.0}},
+                      .sigma_range = 6.0,
+                      .sigma_bearing = 60.0 * kPi / 180.0};
     const SmallWorld world = small_world(settings);
     const auto filter = make_filter(fixed_lag_smoother_kind(), settings, {{"jacobians", "first"}});
-    drive_through(*filter, world);
-    const Pose now = filter->estimate().spread.mean;
-    EXPECT_LT(boxminus(now, world.drive.truth.back()).head<2>().norm(), 30.0) << seed;
+    drive_through(*filter, world, {}, [&](std::size_t scan) {
+      const Pose& truth = world.drive.truth[world.itinerary.scan_step[scan]];
+      const Pose now = filter->estimate().spread.mean;
+      EXPECT_LT(boxminus(now, truth).head<2>().norm(), 50.0) << seed;
+    });
   }
 }
 
