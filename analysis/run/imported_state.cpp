@@ -50,6 +50,7 @@ ImportedState imported_state(const StoredCell& cell) {
   found.windows = setting("windows");
   found.bounds_increments = setting("increments") == "bounded";
   found.moved = setting("moved");
+  found.bounds_anchored = setting("anchored") == "bounded";
   found.adds_truth_covariance = setting("truth_covariance") == "added";
   found.pair = setting("pair");
   found.components = words_in(setting("components"));

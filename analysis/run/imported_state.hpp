@@ -25,6 +25,7 @@ struct ImportedState {
   std::string windows;  ///< [s] lengths of the windows whose increments are judged; empty if none
   bool bounds_increments = false;  ///< whether covariances of increments are only bounds
   std::string moved;  ///< what was moved of the truths onto the first estimates; empty if nothing
+  bool bounds_anchored = false;        ///< whether covariances of moved errors are only bounds
   bool adds_truth_covariance = false;  ///< whether covariances of the truths were added
   /// The two estimators whose difference is judged, by the largest covariance that it can have;
   /// empty if errors are judged.
@@ -33,7 +34,7 @@ struct ImportedState {
   std::vector<std::string> units = {"m", "m", "rad"};
 
   /// Whether covariances are only bounds from above.
-  bool has_bounds() const { return !pair.empty() || bounds_increments; }
+  bool has_bounds() const { return !pair.empty() || bounds_increments || bounds_anchored; }
   bool is_imported() const { return !state.empty(); }
   /// Name of the whole whose error is judged: "pose", "state", "innovation", ...
   std::string name_of_whole() const;

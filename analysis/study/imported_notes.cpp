@@ -5,11 +5,14 @@
 #include "analysis/study/cell_analysis.hpp"
 #include "analysis/study/nees_result.hpp"
 #include "analysis/study/prose.hpp"
+#include "analysis/verdict/block_errors.hpp"
 #include "analysis/verdict/convention_hints.hpp"
 #include "analysis/verdict/gate_scale.hpp"
+#include "analysis/verdict/sentence.hpp"
 #include "engine/text/number_text.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace montecarta::analysis {
@@ -47,6 +50,34 @@ std::vector<std::string> notes_on_innovations(const StudyAnalysis& study) {
   return notes;
 }
 
+/// Hints on other errors and layouts. Bounds belong to the stated error alone, and have none.
+std::vector<std::string> hints_of(const StudyAnalysis& study) {
+  std::vector<std::string> hints;
+  if (study.imported.has_bounds()) return hints;
+  for (const CellAnalysis& cell : study.cells) {
+    const std::string hint = in_words(cell.get<ConventionHint>(), cell.label,
+                                      study.imported.convention, cell.verdict.has_finding());
+    if (!hint.empty()) hints.push_back(prose("components", "hint", {{"hint", hint}}));
+  }
+  return hints;
+}
+
+/// Why blocks of a state are undecided, which their row in the table does not say. Of bounds a note
+/// says it once.
+std::vector<std::string> notes_on_blocks(const StudyAnalysis& study) {
+  std::vector<std::string> notes;
+  if (study.imported.has_bounds()) return notes;
+  for (const CellAnalysis& cell : study.cells) {
+    for (const BlockVerdict& block : cell.get<std::vector<BlockVerdict>>()) {
+      if (block.verdict.answer != Answer::undecided) continue;
+      notes.push_back(prose(
+          "components", "undecided block",
+          {{"cell", cell.label}, {"block", block.name}, {"verdict", in_words(block.verdict)}}));
+    }
+  }
+  return notes;
+}
+
 }  // namespace
 
 std::string components_text(const StudyAnalysis& study) {
@@ -74,13 +105,11 @@ std::vector<std::string> imported_notes(const StudyAnalysis& study) {
   }
   if (!study.imported.moved.empty())
     notes.push_back(prose("components", "anchor", {{"moved", study.imported.moved}}));
+  if (study.imported.bounds_anchored) notes.push_back(prose("components", "anchor bounded"));
   if (study.imported.adds_truth_covariance)
     notes.push_back(prose("components", "truth covariance"));
-  for (const CellAnalysis& cell : study.cells) {
-    const std::string hint =
-        in_words(cell.get<ConventionHint>(), cell.label, convention, cell.verdict.has_finding());
-    if (!hint.empty()) notes.push_back(prose("components", "hint", {{"hint", hint}}));
-  }
+  std::ranges::move(hints_of(study), std::back_inserter(notes));
+  std::ranges::move(notes_on_blocks(study), std::back_inserter(notes));
   for (const CellAnalysis& cell : study.cells) {
     const NeesResult* all = cell.find_nees(ErrorBlock::pose, cell.leading);
     if (all == nullptr || all->series.unusable == 0) continue;

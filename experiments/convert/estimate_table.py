@@ -126,7 +126,8 @@ def is_float(word):
 
 def name_and_unit(word):
     """The name of a column and its unit: "%timestamp [ns]" is timestamp and ns."""
-    name, unit = re.fullmatch(r"[#%/]*(.*?)(?:[\[(]([A-Za-z]*)[\])])?", word.strip()).groups()
+    name, unit = re.fullmatch(r"[#%/]*(.*?)(?:[\[(]((?:[A-Za-z][^\])]*)?)[\])])?",
+                              word.strip()).groups()
     return name.strip(), unit or ""
 
 

@@ -26,6 +26,7 @@ from estimate_table import SAME_TIME, SECONDS_IN
 PLANAR_COLUMNS = ("x_m", "y_m", "heading_rad")
 PLANAR_COMPONENTS = [0, 1, 5]  # x, y, rz
 OUT_OF_PLANE = 0.01            # [m] of z and [rad] of tilt that --planar takes for 0
+KNOWN_START = 1e-6             # [m, rad] deviations of a first estimate that --align takes for 0
 
 
 def headings(poses):
@@ -106,10 +107,13 @@ def without_first(run):
     if not run.times:
         return run
     deviations = np.sqrt(np.maximum(np.diag(run.covariances[0]), 0))[[0, 1, 2, 5]]
+    if (deviations > KNOWN_START).any():
+        raise ConversionError(f"{run.places[0]}: --align yaw (the first estimate has a deviation "
+                              f"of {deviations.max():.3g} m or rad in what the truth is moved by, "
+                              "so that its covariance is not that of a moved error): convert "
+                              "without --align; judge --anchor yaw bounds such errors; if truth "
+                              "and estimates are in one frame, neither is needed")
     notes = [*run.notes, "the first estimate is left out, onto which the truth is moved"]
-    if (deviations > 0.1 * np.sqrt(np.diag(run.covariances[-1])[[0, 1, 2, 5]])).any():
-        notes.append("it states deviations that are not near 0: its covariance is not that of an "
-                     "aligned error")
     return dataclasses.replace(run, places=run.places[1:], times=run.times[1:],
                                states=run.states[1:], covariances=run.covariances[1:], notes=notes)
 

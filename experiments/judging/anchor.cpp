@@ -3,6 +3,7 @@
 
 #include "engine/errors.hpp"
 #include "engine/numbers/angle.hpp"
+#include "experiments/judging/difference_bound.hpp"
 
 #include <Eigen/Geometry>
 
@@ -69,15 +70,38 @@ Motion motion_to(Anchor anchor, const StateShape& shape, const Eigen::VectorXd& 
   return motion;
 }
 
-/// The components that an anchor moves.
-std::vector<Eigen::Index> moved_components(Anchor anchor, const StateShape& shape) {
+Eigen::Index pose_components(const StateShape& shape) {
+  return shape.kind == StateKind::pose ? 3 : kPoseComponents;
+}
+
+/// The truth of the estimate `mean` if the error of its pose in the map (19.1) is `error`.
+Eigen::VectorXd truth_for(const StateShape& shape, const Eigen::VectorXd& mean,
+                          const Eigen::VectorXd& error) {
+  Eigen::VectorXd truth = mean;
   if (shape.kind == StateKind::pose) {
-    if (anchor == Anchor::first) return {0, 1};
-    return {0, 1, 2};
+    truth.head<3>() -= error;
+    return truth;
   }
-  if (anchor == Anchor::first) return {0, 1, 2};
-  if (anchor == Anchor::yaw) return {0, 1, 2, 5};
-  return {0, 1, 2, 3, 4, 5};
+  const Eigen::Vector3d turn = error.segment<3>(3);
+  truth.head<3>() -= error.head<3>();
+  const Eigen::AngleAxisd back(-turn.norm(), turn.normalized());
+  truth.segment<4>(kQuaternionPlace) =
+      (Eigen::Quaterniond(back) * rotation_of(shape, mean)).coeffs();
+  return truth;
+}
+
+/// The derivative of `f` at 0 of `n` numbers.
+template <class Function>
+Eigen::MatrixXd derivative(const Function& f, Eigen::Index n) {
+  constexpr double kStep = 1e-4;  // [m, rad]
+  Eigen::MatrixXd found;
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const Eigen::VectorXd step = kStep * Eigen::VectorXd::Unit(n, k);
+    const Eigen::VectorXd column = (f(step) - f(-step)) / (2.0 * kStep);
+    if (found.size() == 0) found.resize(column.size(), n);
+    found.col(k) = column;
+  }
+  return found;
 }
 
 }  // namespace
@@ -91,6 +115,16 @@ Anchor anchor_named(const std::string& name) {
 std::string name_of(Anchor anchor) { return named(anchor).name; }
 
 std::string moved_by(Anchor anchor) { return named(anchor).moved; }
+
+std::vector<Eigen::Index> moved_components(Anchor anchor, const StateShape& shape) {
+  if (shape.kind == StateKind::pose) {
+    if (anchor == Anchor::first) return {0, 1};
+    return {0, 1, 2};
+  }
+  if (anchor == Anchor::first) return {0, 1, 2};
+  if (anchor == Anchor::yaw) return {0, 1, 2, 5};
+  return {0, 1, 2, 3, 4, 5};
+}
 
 std::optional<std::size_t> move_to_anchor(Anchor anchor, const StateRows& estimates,
                                           const std::filesystem::path& path,
@@ -113,15 +147,43 @@ std::optional<std::size_t> move_to_anchor(Anchor anchor, const StateRows& estima
   return row;
 }
 
-double share_at_anchor(Anchor anchor, const StateRows& estimates, std::size_t row) {
+AnchorError::AnchorError(Anchor anchor, ErrorConvention convention, const StateRows& estimates,
+                         std::size_t row)
+    : anchor_(anchor), convention_(convention), estimates_(&estimates), row_(row) {
   constexpr double kLeastVariance = 1e-12;
-  double most = 0.0;
-  for (const Eigen::Index i : moved_components(anchor, estimates.shape)) {
-    const double first = estimates.covariance[row](i, i);
-    const double last = estimates.covariance.back()(i, i);
-    if (first > kLeastVariance && last > 0.0) most = std::max(most, first / last);
+  const StateShape& shape = estimates.shape;
+  const Eigen::VectorXd& mean = estimates.state[row];
+  const Eigen::Index n = pose_components(shape);
+  covariance_ = estimates.covariance[row].topLeftCorner(n, n);
+  if (!is_covariance(covariance_)) {  // a fault of the estimate; its size is all that is known
+    covariance_ = Eigen::MatrixXd(covariance_.diagonal().cwiseAbs().asDiagonal());
   }
-  return most;
+  const auto moved = moved_components(anchor, shape);
+  if (std::ranges::all_of(moved,
+                          [&](Eigen::Index i) { return covariance_(i, i) <= kLeastVariance; })) {
+    covariance_.setZero();
+    return;
+  }
+  const Eigen::MatrixXd from_map = derivative(
+      [&](const Eigen::VectorXd& error) -> Eigen::VectorXd {
+        return error_of(shape, convention, mean, truth_for(shape, mean, error)).head(n);
+      },
+      n);
+  const auto factored = from_map.partialPivLu();
+  covariance_ = factored.solve(factored.solve(covariance_).transpose());
+}
+
+Eigen::MatrixXd AnchorError::covariance_in(std::size_t row) const {
+  const StateShape& shape = estimates_->shape;
+  const Eigen::VectorXd &first = estimates_->state[row_], &mean = estimates_->state[row];
+  const Eigen::MatrixXd carried = derivative(
+      [&](const Eigen::VectorXd& error) {
+        const Motion motion = motion_to(anchor_, shape, first, truth_for(shape, first, error));
+        return error_of(shape, convention_, mean, motion.moved(shape, mean));
+      },
+      pose_components(shape));
+  const Eigen::MatrixXd P = carried * covariance_ * carried.transpose();
+  return 0.5 * (P + P.transpose());
 }
 
 }  // namespace montecarta::experiments

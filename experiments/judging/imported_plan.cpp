@@ -56,6 +56,7 @@ TextPairs import_settings(const StateShape& shape, const JudgingOptions& options
   if (options.anchor) {
     settings.emplace_back("anchor", name_of(*options.anchor));
     settings.emplace_back("moved", moved_by(*options.anchor));
+    if (options.bounds_anchored) settings.emplace_back("anchored", "bounded");
   }
   if (!options.pair.empty()) settings.emplace_back("pair", options.pair);
   if (options.adds_truth_covariance) settings.emplace_back("truth_covariance", "added");

@@ -5,6 +5,7 @@
 #include "engine/errors.hpp"
 #include "engine/formatted.hpp"
 #include "engine/records/posix_file.hpp"
+#include "experiments/judging/anchored_runs.hpp"
 #include "experiments/judging/difference_bound.hpp"
 #include "experiments/judging/imported_plan.hpp"
 #include "experiments/judging/likely_mistakes.hpp"
@@ -303,8 +304,7 @@ std::vector<std::string> write_innovations(const EstimateSource& source, const O
 /// What is said of all runs.
 struct RunNotes {
   const JudgingOptions* options;
-  double share_at_anchor = 0.0;
-  std::string of_share = {};  ///< the file with the largest share
+  AnchoredRuns* anchored = nullptr;  ///< nullptr: truths are not moved
   UnwrappedInnovations unwrapped = {};
   SeenInnovations seen = {};
   LikelyMistakes mistakes;
@@ -313,23 +313,12 @@ struct RunNotes {
   std::vector<UnusableRows> unusable = {};  ///< {cell}
   std::uint64_t missing = 0;
 
-  /// A note on covariances that describe more than the error since the anchor.
-  std::vector<std::string> notes_on_anchor() const {
-    constexpr double kMostShare = 0.01;
-    if (share_at_anchor <= kMostShare) return {};
-    return {
-        formatted("at the first estimate, onto which --anchor moves the truth, a variance is {} % "
-                  "of the last one in {} (it describes more than the error since then): the "
-                  "verdict leans to conservative",
-                  to_text(std::round(100.0 * share_at_anchor)), of_share)};
-  }
-
   std::vector<std::string> all(const EstimateSource& source, const Overview& overview) const {
     std::vector<std::string> notes = source.notes();
     if (!uncorrelated.empty()) notes.push_back(uncorrelated);
     for (const auto& some :
          {unwrapped.notes(), notes_on_times(overview, missing), use.notes(options->match.is_pair),
-          notes_on_anchor(), mistakes.notes()}) {
+          anchored == nullptr ? std::vector<std::string>() : anchored->notes(), mistakes.notes()}) {
       notes.insert(notes.end(), some.begin(), some.end());
     }
     for (std::size_t c = 0; c < unusable.size(); ++c) {
@@ -360,13 +349,8 @@ void remove_first(StateRows& rows, Truths& truths) {
 std::vector<std::optional<TrueState>> truths_for(StateRows& rows, const fs::path& path,
                                                  const TruthPath& truth, RunNotes& notes) {
   auto truths = truth.at(rows, path, notes.use);
-  if (const auto anchor = notes.options->anchor) {
-    const auto row = move_to_anchor(*anchor, rows, path, truths);
-    const double share = row ? share_at_anchor(*anchor, rows, *row) : 0.0;
-    if (share > notes.share_at_anchor) {
-      notes.share_at_anchor = share;
-      notes.of_share = path.string();
-    }
+  if (notes.anchored != nullptr) {
+    notes.anchored->move(rows, path, truths);
     remove_first(rows, truths);
   }
   for (std::size_t row = 0; row < truths.size(); ++row) {
@@ -443,13 +427,36 @@ bool compares_starts(const JudgingOptions& options) {
          *options.convention != ErrorConvention::right_invariant;
 }
 
+/// Surveys the anchors of all runs, if truths are moved.
+std::optional<AnchoredRuns> anchored_runs(const EstimateSource& source,
+                                          const JudgingOptions& options, const Overview& all) {
+  if (!options.anchor || !has_states(all)) return std::nullopt;
+  AnchoredRuns anchored(*options.anchor, *options.convention);
+  LikelyMistakes units(source.cells(), *options.convention, false, false);  // refuses wrong ones
+  for (std::size_t run = 0; run < source.runs().size(); ++run) {
+    for (std::size_t c = 0; c < source.cells().size(); ++c) {
+      const fs::path path = source.place(c, run);
+      const StateRows rows = source.estimates(c, run);
+      require_alike(rows, path, all.rows, all.path);
+      const StateRows truth_rows = source.truth(c, run, rows.shape);
+      units.add_truth(truth_rows, source.truth_place(c, run));
+      units.add(c, rows, path, truth_rows);
+      const TruthPath truth(truth_rows, source.truth_place(c, run), options.match);
+      TruthUse ignored;  // which is said when the run is judged
+      anchored.survey(rows, path, truth.at(rows, path, ignored));
+    }
+  }
+  return anchored;
+}
+
 std::vector<std::string> write_runs(const EstimateSource& source, const JudgingOptions& options,
                                     const Overview& all, const StudyPlan& plan,
-                                    ResultWriter& writer) {
+                                    AnchoredRuns* anchored, ResultWriter& writer) {
   if (!has_states(all)) return write_innovations(source, all, plan, writer);
   const std::vector<RecordLayout> layouts = layouts_of(plan, Detail::usual);
   const auto judged = judged_components(all.rows.shape, options.components);
   RunNotes notes{.options = &options,
+                 .anchored = anchored,
                  .mistakes = LikelyMistakes(source.cells(), *options.convention,
                                             compares_starts(options), options.match.is_pair)};
   notes.unusable.resize(source.cells().size());
@@ -484,11 +491,14 @@ std::vector<std::string> judge_estimates(const EstimateSource& source,
   options.convention = source.has_errors() || !has_states(all)
                            ? ErrorConvention::world
                            : stated_error(all.rows.shape, all.path, given.convention);
+  std::optional<AnchoredRuns> anchored = anchored_runs(source, options, all);
+  options.bounds_anchored = anchored && anchored->are_bounded();
   const StudyPlan plan = imported_plan(source, all.rows, all.clock.times(), options);
   ResultWriter writer =
       ResultWriter::create(options.output, plan, options.provenance, options.existing);
   try {
-    std::vector<std::string> notes = write_runs(source, options, all, plan, writer);
+    std::vector<std::string> notes =
+        write_runs(source, options, all, plan, anchored ? &*anchored : nullptr, writer);
     writer.finish();
     return notes;
   } catch (...) {

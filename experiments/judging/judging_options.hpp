@@ -23,6 +23,7 @@ struct JudgingOptions {
   std::optional<ErrorConvention> convention = {};
   TimeMatch match;
   std::optional<Anchor> anchor = {};   ///< how truths are moved onto the first estimates
+  bool bounds_anchored = false;        ///< whether covariances of moved errors are only bounds
   bool adds_truth_covariance = false;  ///< whether truths have errors, of known covariance
   std::string pair =
       {};  ///< two estimators, the second of which is in place of the truth; or empty

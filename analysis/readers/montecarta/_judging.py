@@ -310,7 +310,9 @@ def judge_estimates(estimates: ArrayLike, truths: ArrayLike, covariances: ArrayL
         covariance has d = 6 components.
     anchor : str, optional
         "first", "yaw" or "se3": what of each truth is moved onto the first estimate of its run:
-        position, position and heading, or position and rotation. Without it nothing is moved.
+        position, position and heading, or position and rotation. It is for estimates that start in
+        a frame of their own, with a first covariance near 0; else moved errors are judged by an
+        upper bound. Without it nothing is moved.
 
     Returns
     -------

@@ -81,7 +81,31 @@ TEST_F(JudgeTruths, AreMovedOntoTheFirstEstimate) {
               0.5 * (2 * along * along + std::pow(2 - up, 2) + std::pow(1 - up, 2)), 1e-12);
   EXPECT_EQ(cell.verdict.missing, 0U);
   EXPECT_THAT(out_, HasSubstr("moved by position and heading onto its first estimate"));
-  EXPECT_THAT(err_, Not(HasSubstr("a variance is")));
+  EXPECT_THAT(err_, Not(HasSubstr("bound")));
+  EXPECT_FALSE(cell.verdict.is_by_upper_bounds);
+}
+
+// The moved errors have the error of the anchor, whose correlation with theirs is not known.
+TEST_F(JudgeTruths, AreBoundedWhereTheAnchorIsUncertain) {
+  const std::string P = ",1,0,0,1,0,1\n";
+  write_both("time_s,x_m,y_m,heading_rad,cov_0_0,cov_0_1,cov_0_2,cov_1_1,cov_1_2,cov_2_2",
+             "0,10,5,0" + P + "1,10,7,0" + P, "0,10,5,0" + P + "1,10,6,0" + P);
+  write("truth.csv", "time_s,x_m,y_m,heading_rad\n0,0,0,0\n1,0,0,0\n");
+  const auto cell = judged({"--truth", "truth.csv", "--anchor", "first", "--error", "world"});
+  const double t = std::sqrt(0.5);  // the shares are 1/2, 1/2, 0 and 1/2, 1/2, 1
+  EXPECT_NEAR(cell.nees[0].mean, 0.5 * (4.0 + 1.0) / (2.0 + t + 1.0 / t), 1e-9);
+  EXPECT_TRUE(cell.verdict.is_by_upper_bounds);
+  EXPECT_THAT(out_, HasSubstr("leave out --anchor"));
+  EXPECT_THAT(err_, HasSubstr("deviations up to 1 m of x in e_0.csv"));
+}
+
+// The header of EuRoC is a comment, so that its first row would be the header.
+TEST_F(JudgeTruths, NeedAHeaderThatIsNoComment) {
+  write("e_0.csv", "#timestamp [ns], p_x, p_y\n1403636579763555584,1,2\n");
+  write("truth.csv", "time_s,x_m,y_m\n1,0,0\n");
+  EXPECT_THAT(call({"judge", "e_0.csv", "--truth", "truth.csv", "-o", "x.h5"}).err,
+              AllOf(HasSubstr("e_0.csv:2: the row begins with the number 1403636579763555584"),
+                    HasSubstr("begins with # is a comment"), HasSubstr("estimates.py")));
 }
 
 }  // namespace

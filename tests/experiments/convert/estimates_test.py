@@ -234,7 +234,7 @@ class Layouts(Estimates):
             self.assertNotIn("ASSUMED", self.said)
 
         for form in ("P_{}{}", "P_{}_{}", "cov_{}_{}", "cov_{}{}", "sigma_{}{}", "c{}{}",
-                     "Cov[{}][{}]", "pose_cov_{}_{}", "P{}x{}", "Sigma_{}_{}"):
+                     "Cov[{}][{}]", "P_{}{} [m^2]", "pose_cov_{}_{}", "P{}x{}", "Sigma_{}_{}"):
             for first in (0, 1):
                 for places in triangles:
                     expect(form, places, first)
@@ -520,7 +520,11 @@ class Alignment(Estimates):
         self.converted(estimates, kind="estimate", files=[self.path("e.txt")], align="yaw",
                        order="position-first")
         self.assertEqual([one[0] for one in self.rows("e.csv")], ["0.5", "1"])
-        self.assertNotIn("not near 0", self.said)
+        self.assertIn("left out", self.said)
+        self.write("late.txt", row(0.5, self.estimates[1], 1e-3 * WHOLE))
+        self.expect_refused(estimates, ("late.txt:1", "0.0954 m or rad", "judge --anchor yaw"),
+                            kind="estimate", files=[self.path("late.txt")], align="yaw",
+                            order="position-first")
 
     def test_interpolates_the_truth_at_the_first_estimate(self):
         self.write("t.txt", TUM + row(0, 0, 0, 0, 0, 0, 0, 1) + row(1, 4, 0, 0, 0, 0, 0, -1))

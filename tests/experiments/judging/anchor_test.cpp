@@ -97,14 +97,55 @@ TEST(Anchor, IsForPoses) {
               HasSubstr("e.csv: --anchor first is for poses"));
 }
 
-// Covariances that describe more than the error since the anchor can be told by their beginning.
-TEST(Anchor, KnowsWhatIsUncertainThere) {
-  StateRows rows{.shape = kPlane};
-  rows.covariance = {Eigen::Vector3d(0.25, 0.0, 0.04).asDiagonal(),
-                     Eigen::Vector3d(1.0, 1.0, 0.4).asDiagonal()};
-  EXPECT_DOUBLE_EQ(share_at_anchor(Anchor::yaw, rows, 0), 0.25);
-  rows.covariance[0].setZero();
-  EXPECT_EQ(share_at_anchor(Anchor::yaw, rows, 0), 0.0);
+/// The truth of an estimate with this error (position, then rotation) by a convention.
+Eigen::VectorXd truth_with_error(const Eigen::VectorXd& mean, const Eigen::VectorXd& error,
+                                 ErrorConvention convention) {
+  const Eigen::Quaterniond R = quaternion_in(mean);
+  const Eigen::Vector3d turn = error.segment<3>(3), shift = error.head<3>();
+  const Eigen::Quaterniond back = turn_about(turn, -turn.norm());
+  const bool is_body = convention == ErrorConvention::body;
+  Eigen::VectorXd truth = mean;
+  truth.head<3>() -= is_body ? Eigen::Vector3d(R * shift) : shift;
+  truth.segment<4>(kQuaternionPlace) =
+      (is_body || convention == ErrorConvention::world_body ? R * back : back * R).coeffs();
+  return truth;
+}
+
+// Law: an anchor with the error v puts the error into a later estimate whose covariance is that of
+// the motion by v, with the lever of the distance between both.
+TEST(Anchor, CarriesItsErrorIntoLaterEstimates) {
+  Eigen::VectorXd error = Eigen::VectorXd::Zero(9);
+  error.head<6>() << 2e-4, -1e-4, 3e-4, 1e-4, 2e-4, -1.5e-4;
+  for (const ErrorConvention convention :
+       {ErrorConvention::world, ErrorConvention::body, ErrorConvention::world_body}) {
+    for (const Anchor anchor : {Anchor::first, Anchor::yaw, Anchor::se3}) {
+      Seen seen = seen_from(Eigen::Quaterniond::Identity(), Eigen::Vector3d::Zero());
+      seen.estimates.covariance.assign(4, error * error.transpose());
+      const AnchorError of_anchor(anchor, convention, seen.estimates, 0);
+      ASSERT_FALSE(of_anchor.is_known());
+      seen.truths[0]->state = truth_with_error(seen.estimates.state[0], error, convention);
+      move_to_anchor(anchor, seen.estimates, "e.csv", seen.truths);
+      for (std::size_t row = 1; row < 4; ++row) {
+        const Eigen::VectorXd carried =
+            error_of(kSpace, convention, seen.estimates.state[row], seen.truths[row]->state);
+        const Eigen::MatrixXd expected = carried * carried.transpose();
+        EXPECT_LT((of_anchor.covariance_in(row) - expected).norm(), 2e-3 * expected.norm())
+            << name_of(convention) << ", " << name_of(anchor) << ", row " << row;
+      }
+    }
+  }
+}
+
+TEST(Anchor, IsKnownWhereWhatItMovesIs) {
+  Seen seen = seen_from(Eigen::Quaterniond::Identity(), Eigen::Vector3d::Zero());
+  Eigen::VectorXd variances = Eigen::VectorXd::Ones(9);
+  variances.head<3>().setConstant(1e-13);
+  seen.estimates.covariance.assign(4, variances.asDiagonal());
+  const auto is_known = [&](Anchor anchor) {
+    return AnchorError(anchor, ErrorConvention::world, seen.estimates, 0).is_known();
+  };
+  EXPECT_TRUE(is_known(Anchor::first));
+  EXPECT_FALSE(is_known(Anchor::yaw));
 }
 
 }  // namespace
