@@ -53,7 +53,7 @@ void check_header(const Names& header, const std::string& place) {
   refuse_other_time(header.front(), place);
   if (to_number(header.front())) {
     throw StudyError(
-        "{}: the row begins with the number {}, where a header with the names of the columns is "
+        "{}: '{}' is a number, where a header with the names of the columns is "
         "expected (a line that begins with # is a comment, so that names behind it are not read): "
         "begin the header with time_s, without #, or convert the file by "
         "experiments/convert/estimates.py",

@@ -104,7 +104,7 @@ TEST_F(JudgeTruths, NeedAHeaderThatIsNoComment) {
   write("e_0.csv", "#timestamp [ns], p_x, p_y\n1403636579763555584,1,2\n");
   write("truth.csv", "time_s,x_m,y_m\n1,0,0\n");
   EXPECT_THAT(call({"judge", "e_0.csv", "--truth", "truth.csv", "-o", "x.h5"}).err,
-              AllOf(HasSubstr("e_0.csv:2: the row begins with the number 1403636579763555584"),
+              AllOf(HasSubstr("e_0.csv:2: '1403636579763555584' is a number"),
                     HasSubstr("begins with # is a comment"), HasSubstr("estimates.py")));
 }
 
