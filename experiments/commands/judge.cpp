@@ -116,7 +116,7 @@ void refuse_number_as_file(const std::vector<std::string>& operands) {
   for (const std::string& operand : operands) {
     if (!to_number(operand) || std::filesystem::exists(operand)) continue;
     throw StudyError(
-        "{}: is there no such file (--interpolate takes no number): if it is the longest gap of "
+        "{}: there is no such file (--interpolate takes no number): if it is the longest gap of "
         "the truth in s, give it by --longest-gap {}",
         operand, operand);
   }

@@ -129,7 +129,7 @@ void require_radians(const StateRows& rows, const std::filesystem::path& path) {
 
 std::string note_on_angles(const StateRows& rows, const std::filesystem::path& path) {
   for (const AngleColumn& angle : angles_of(rows)) {
-    if (const std::string note = note_on_heading(rows, angle, path); !note.empty()) return note;
+    if (std::string note = note_on_heading(rows, angle, path); !note.empty()) return note;
     const auto beyond = first_beyond(angle);
     if (!beyond) continue;
     const bool begins_there = *beyond == 0 && angle.is_orientation;

@@ -119,26 +119,26 @@ std::optional<TrueState> TruthPath::interpolated(double time, const std::string&
   return found;
 }
 
-/// Adds how far the truth is from a straight line at the time of a position, by its curvature
-/// around there: rows at distance h leave s (1 - s) h^2 / 2 times the acceleration, s of the way.
+/// Adds how far the truth is from a straight line at the time of a position: s of the way between
+/// rows at distance h, s (1 - s) h^2 / 2 times its acceleration, by the velocities before and
+/// after.
 void TruthPath::add_bend(const StateRows& estimates, std::size_t row, TruthUse& use) const {
   if (rows_.shape.kind == StateKind::vector || estimates.covariance.empty()) return;
   const Eigen::Index n = rows_.shape.kind == StateKind::pose ? 2 : 3;
   const double time = estimates.time[row];
-  ++use.interpolated_positions;
-  use.claimed_squares += std::max(0.0, estimates.covariance[row].diagonal().head(n).sum());
   const auto after = std::ranges::lower_bound(rows_.time, time);
   const auto right = static_cast<std::size_t>(after - rows_.time.begin());
   if (right < 2 || right + 1 >= rows_.time.size()) return;
   const auto spacing = [&](std::size_t k) { return rows_.time[k] - rows_.time[k - 1]; };
-  constexpr double kUneven = 1.5;
-  const auto [least, most] = std::minmax({spacing(right - 1), spacing(right), spacing(right + 1)});
-  if (most > kUneven * least) return;
-  const auto place = [&](std::size_t k) { return rows_.state[k].head(n); };
-  const double share = (time - rows_.time[right - 1]) / spacing(right);
-  const Eigen::VectorXd curve =
-      place(right - 2) - place(right - 1) - place(right) + place(right + 1);  // twice h^2 times it
-  use.bend_squares += (0.25 * share * (1.0 - share) * curve).squaredNorm();
+  const auto velocity = [&](std::size_t k) {
+    return Eigen::VectorXd((rows_.state[k] - rows_.state[k - 1]).head(n) / spacing(k));
+  };
+  const double apart = 0.5 * spacing(right - 1) + spacing(right) + 0.5 * spacing(right + 1);
+  const Eigen::VectorXd acceleration = (velocity(right + 1) - velocity(right - 1)) / apart;
+  const double before = time - rows_.time[right - 1], behind = rows_.time[right] - time;
+  use.bend_squares += (0.5 * before * behind * acceleration).squaredNorm();
+  use.claimed_squares += std::max(0.0, estimates.covariance[row].diagonal().head(n).sum());
+  ++use.interpolated_positions;
 }
 
 std::vector<std::optional<TrueState>> TruthPath::at(const StateRows& estimates,

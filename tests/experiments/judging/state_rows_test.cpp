@@ -247,7 +247,7 @@ TEST_F(StateFiles, HaveNoStraightTruthWhereItBends) {
     use.outside = 0;
     return joined(use.notes(false), "\n");
   };
-  EXPECT_THAT(notes_at(1.0), HasSubstr("bends by 0.10"));  // 0.1125, of 17 of 19 positions
+  EXPECT_THAT(notes_at(1.0), HasSubstr("bends by 0.11"));
   EXPECT_EQ(notes_at(0.2), "");
 }
 
