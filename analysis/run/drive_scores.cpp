@@ -116,10 +116,16 @@ void add_whitened(const Eigen::VectorXd& error, VectorSeries& series) {
   }
 }
 
+/// An error in units of P + R, and the logarithm of the determinant of P + R.
+struct WhitenedAtFix {
+  Eigen::VectorXd error;
+  double log_determinant;
+};
+
 /// The error in units of P + R; nullopt if P + R is not positive definite.
-std::optional<Eigen::VectorXd> in_units_of(const Eigen::VectorXd& error, const RowBelief& belief,
-                                           const Eigen::MatrixXd& own,
-                                           const Eigen::MatrixXd& of_fix) {
+std::optional<WhitenedAtFix> in_units_of(const Eigen::VectorXd& error, const RowBelief& belief,
+                                         const Eigen::MatrixXd& own,
+                                         const Eigen::MatrixXd& of_fix) {
   const Eigen::MatrixXd total = own + of_fix;
   const Eigen::LLT<Eigen::MatrixXd> factor(total);
   if (!belief.is_known || !total.allFinite() || !error.allFinite() ||
@@ -127,10 +133,11 @@ std::optional<Eigen::VectorXd> in_units_of(const Eigen::VectorXd& error, const R
     return std::nullopt;
   }
   const Eigen::VectorXd whitened = factor.matrixL().solve(error);
+  const double log_determinant = 2.0 * factor.matrixLLT().diagonal().array().log().sum();
   const double nees = whitened.squaredNorm();
-  if (nees == 0.0) return whitened;
+  if (nees == 0.0) return WhitenedAtFix{whitened, log_determinant};
   const double scaled = on_chi_square_scale(nees, total, own, belief.inverse_freedom);
-  return whitened * std::sqrt(scaled / nees);
+  return WhitenedAtFix{whitened * std::sqrt(scaled / nees), log_determinant};
 }
 
 bool is_stored(const RunRows& rows) {
@@ -161,9 +168,10 @@ FixErrors errors_at_fixes(const PathAtFixes& fixes, std::span<const std::uint32_
       ++result.undefined;
       continue;
     }
-    add_whitened(*whitened, result.whitened);
+    add_whitened(whitened->error, result.whitened);
     add_whitened(of_fix.llt().matrixL().solve(error.segment(first, d)), result.by_reference);
-    result.nees.push_back(whitened->squaredNorm());
+    result.nees.push_back(whitened->error.squaredNorm());
+    result.log_determinant.push_back(whitened->log_determinant);
     result.times.push_back(fixes.times()[f]);
   }
   return result;

@@ -22,9 +22,10 @@ struct FixErrors {
   /// the fix. The sum of squares is the NEES; for particle filters it is on the scale of the
   /// chi-square.
   VectorSeries whitened;
-  VectorSeries by_reference;  ///< {component}{fix judged} errors in units of R alone
-  std::vector<double> nees;   ///< {fix judged} NEES
-  std::vector<double> times;  ///< [s] {fix judged} time of each fix
+  VectorSeries by_reference;            ///< {component}{fix judged} errors in units of R alone
+  std::vector<double> nees;             ///< {fix judged} NEES
+  std::vector<double> log_determinant;  ///< {fix judged} logarithm of the determinant of P + R
+  std::vector<double> times;            ///< [s] {fix judged} time of each fix
   std::size_t undefined = 0;  ///< number of fixes left out: no finite covariance, or too few draws
 };
 

@@ -89,14 +89,45 @@ bool depend_on_interval(const std::vector<TunedByInterval>& all) {
   return false;
 }
 
+bool has_truth(const TuningResult& result) { return result.score == TuningScore::truth; }
+
+/// Says by what a recorded drive was scored; empty if there is a truth.
+std::string score_note(const TuningResult& result) {
+  const Values reference = {{"reference", result.reference}};
+  switch (result.score) {
+    case TuningScore::truth:
+      return {};
+    case TuningScore::reference:
+      return prose(
+          "tuning",
+          result.reference_has_errors ? "scored by reference" : "scored by exact reference",
+          reference);
+    case TuningScore::innovations:
+      break;
+  }
+  const bool is_unused = result.reference.empty() || result.reference_has_errors;
+  return is_unused ? prose("tuning", "scored by innovations")
+                   : prose("tuning", "reference without errors", reference);
+}
+
+/// Says how few independent errors the fixes are worth.
+std::string memory_note(const TuningResult& result, const TuningConfirmation& confirmation) {
+  return prose("tuning", "memory",
+               {{"learned", compact(result.effective)},
+                {"fixes", std::to_string(confirmation.fixes)},
+                {"confirmed", compact(confirmation.effective)}});
+}
+
 std::string gain_note(const TuningResult& result, const TuningConfirmation& confirmation) {
   const std::string runs = std::to_string(confirmation.runs);
   const std::string where =
-      result.has_truth         ? formatted("{} fresh runs (seed {})", runs, confirmation.seed)
+      has_truth(result)        ? formatted("{} fresh runs (seed {})", runs, confirmation.seed)
       : confirmation.runs == 1 ? "the second half of the drive"
                                : formatted("the second halves of {} drives", runs);
+  const bool is_by_fixes = result.score == TuningScore::reference;
   return prose("tuning", "gain",
-               {{"where", where},
+               {{"unit", is_by_fixes ? "fix" : "scan"},
+                {"where", where},
                 {"gain", with_interval(confirmation.gain.mean, confirmation.gain.interval)}});
 }
 
@@ -106,7 +137,7 @@ std::string failed_note(const TuningResult& result, const TuningConfirmation& co
   if (before + after == 0) return {};
   return prose("tuning", "failed",
                {{"runs", std::to_string(confirmation.runs) +
-                             (result.has_truth ? " fresh runs" : " recorded drives")},
+                             (has_truth(result) ? " fresh runs" : " recorded drives")},
                 {"before", std::to_string(before)},
                 {"after", std::to_string(after)}});
 }
@@ -123,14 +154,30 @@ double NoiseGrid::least() const {
   return least;
 }
 
+std::vector<std::string> tuning_warnings(const TuningResult& result) {
+  if (result.outliers == 0) return {};
+  return {prose("tuning", "outliers",
+                {{"outliers", std::to_string(result.outliers)},
+                 {"fixes", std::to_string(result.fixes)},
+                 {"reference", result.reference}})};
+}
+
 std::string tuning_sentence(const TuningResult& result, const TuningConfirmation& confirmation) {
   const std::string found =
       formatted("{} should assume {}.", result.cell, factors_in_words(result.noise));
-  if (!result.has_truth)
+  if (result.score == TuningScore::innovations)
     return formatted("{} {}", found,
                      prose("tuning", "innovations", {{"verdict", confirmation.verdict}}));
   const bool is_open =
       confirmation.answer == Answer::undecided || confirmation.answer == Answer::untested;
+  if (result.score == TuningScore::reference) {
+    const char* const key = confirmation.answer == Answer::consistent ? "consistent by reference"
+                            : is_open                                 ? "undecided by reference"
+                                      : "not consistent by reference";
+    return formatted(
+        "{} {}", found,
+        prose("tuning", key, {{"reference", result.reference}, {"verdict", confirmation.verdict}}));
+  }
   const char* const key = confirmation.answer == Answer::consistent ? "consistent"
                           : is_open                                 ? "undecided"
                           : confirmation.is_slight                  ? "slight"
@@ -144,7 +191,14 @@ std::string tuning_sentence(const TuningResult& result, const TuningConfirmation
 std::vector<std::string> tuning_notes(const TuningResult& result,
                                       const TuningConfirmation& confirmation) {
   const TunedNoise& noise = result.noise;
-  std::vector<std::string> notes = {gain_note(result, confirmation)};
+  std::vector<std::string> notes;
+  if (auto score = score_note(result); !score.empty()) notes.push_back(std::move(score));
+  notes.push_back(gain_note(result, confirmation));
+  if (result.score == TuningScore::reference) {
+    notes.push_back(memory_note(result, confirmation));
+    if (result.effective < static_cast<double>(result.parts))
+      notes.push_back(prose("tuning", "long memory"));
+  }
   if (auto failed = failed_note(result, confirmation); !failed.empty())
     notes.push_back(std::move(failed));
   const auto note = [&](const char* key, const std::string& noises) {
@@ -160,7 +214,7 @@ std::vector<std::string> tuning_notes(const TuningResult& result,
   note("flat", noises_for_which(noise, is_flat));
   if (result.has_gate) notes.push_back(prose("tuning", "gate"));
   if (depend_on_interval(result.by_interval)) notes.push_back(prose("tuning", "not white"));
-  if (result.has_truth) {
+  if (has_truth(result)) {
     notes.push_back(prose("tuning", "cover",
                           {{"end", cover_factor_text(confirmation.covering_at_end)},
                            {"path", cover_factor_text(confirmation.covering_path)}}));

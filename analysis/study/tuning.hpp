@@ -44,15 +44,27 @@ struct NoiseGrid {
   double least() const;
 };
 
+/// The log score that is minimised: that of the pose, of the errors at the fixes of a reference, or
+/// of the innovations.
+enum class TuningScore { truth, reference, innovations };
+
 /// What a search for the noise of one cell found.
 struct TuningResult {
   std::string cell;
-  bool has_truth = true;
-  std::uint64_t runs = 0;  ///< number of runs, or of recorded drives
+  TuningScore score = TuningScore::truth;
+  /// The reference of recorded drives, by which the noise was chosen or could have been; empty if
+  /// there is none.
+  std::string reference = {};
+  bool reference_has_errors = false;  ///< whether it states its errors
+  std::uint64_t runs = 0;             ///< number of runs, or of recorded drives
   /// Whether detections are matched by a gate, so that the score jumps where a match changes.
   bool has_gate = false;
   std::size_t parts = 0;  ///< number of parts of the data that count as independent
-  TunedNoise noise;       ///< by all intervals together
+  /// Of a reference: the number of fixes that are scored, of gross outliers among them, and of
+  /// independent samples that the errors at the fixes are worth.
+  std::size_t fixes = 0, outliers = 0;
+  double effective = 0.0;
+  TunedNoise noise;  ///< by all intervals together
   std::vector<TunedByInterval> by_interval = {};
   NoiseGrid grid = {};
 };
@@ -78,8 +90,13 @@ struct TuningConfirmation {
   /// runs, at the last scan, and at all scans of a run together; infinite if too many runs failed;
   /// NaN without a truth.
   double covering_at_end = 0.0, covering_path = 0.0;
+  /// Of a reference: the number of fixes judged, and of independent samples that they are worth.
+  std::size_t fixes = 0;
+  double effective = 0.0;
 };
 
+/// What the user should know before the answer: {paragraph}.
+std::vector<std::string> tuning_warnings(const TuningResult& result);
 /// The first sentences: the factors, how certain they are, and whether they make the filter
 /// consistent.
 std::string tuning_sentence(const TuningResult& result, const TuningConfirmation& confirmation);

@@ -20,6 +20,7 @@
 #include "experiments/text/words.hpp"
 #include "experiments/tuning/noise_confirmation.hpp"
 #include "experiments/tuning/noise_search.hpp"
+#include "experiments/tuning/reference_half.hpp"
 
 #include <filesystem>
 #include <iostream>
@@ -68,6 +69,42 @@ std::uint64_t seed_to_confirm(const Study& study, const Arguments& arguments) {
       seed);
 }
 
+/// Returns the score that --by names, or else that of the best knowledge of the path: the truth, a
+/// reference that states its errors, or the innovations.
+TuningScore score_to_tune_by(const Itinerary& itinerary, const Arguments& arguments) {
+  const auto by = arguments.text("by");
+  const ReferencePath* const reference = reference_to_tune_by(itinerary);
+  if (!by) {
+    if (itinerary.has_truth) return TuningScore::truth;
+    const bool has_errors = reference != nullptr && !reference->covariance.empty();
+    return has_errors ? TuningScore::reference : TuningScore::innovations;
+  }
+  if (*by != "reference" && *by != "innovations") {
+    throw StudyError(
+        "--by {}: no such score (a recorded drive has two): give reference or "
+        "innovations",
+        *by);
+  }
+  if (itinerary.has_truth) {
+    throw StudyError(
+        "--by {}: this study is simulated (its true poses are known, and score best): leave --by "
+        "out",
+        *by);
+  }
+  if (*by == "innovations") return TuningScore::innovations;
+  if (reference != nullptr) return TuningScore::reference;
+  throw StudyError(
+      "--by reference: the drive has no reference: add reference.csv, or leave --by out");
+}
+
+/// Takes what the output says of the reference of a recorded drive.
+void take_reference(const Itinerary& itinerary, TuningResult& result) {
+  const ReferencePath* const reference = reference_to_tune_by(itinerary);
+  if (result.score == TuningScore::truth || reference == nullptr) return;
+  result.reference = reference->name;
+  result.reference_has_errors = !reference->covariance.empty();
+}
+
 /// Runs the confirming study, stores it in `file` and returns its analysis.
 StudyAnalysis analysis_of(const StudyPlan& plan, const fs::path& file, const Arguments& arguments) {
   RunOptions options;
@@ -95,6 +132,7 @@ void print_findings(const TuningResult& result, const TuningConfirmation& confir
                     const CellSpec& tuned) {
   const std::size_t width = output_width();
   const auto print = [&](const std::string& text) { std::cout << wrapped(text, width, 2); };
+  for (const std::string& warning : tuning_warnings(result)) print(warning);
   print(tuning_sentence(result, confirmation));
   print("Write" + options_text(result.noise, tuned) + " into its cell.");
   std::cout << '\n';
@@ -127,12 +165,19 @@ int tune_command(const Arguments& arguments) {
   if (folder && !arguments.has("force"))
     refuse_existing(*folder, {kConfirmationFile, "landscape.csv", "figures", "data"});
   const Parallel parallel = parallel_of(arguments);
-  const TuningResult result = find_noise(study, cell, parallel);
+  const StudyPlan given = make_plan(study);
+  const TuningScore score = score_to_tune_by(given.drives->itinerary_of(0), arguments);
+  TuningResult result = find_noise(study, cell, score, parallel);
   const Study confirming = confirming_study(study, cell, result.noise, seed);
   const StudyPlan plan = make_plan(confirming);
   const PassingFolder passing;
-  if (!result.has_truth) {
-    print_findings(result, confirm_on_drives(confirming, plan, parallel), confirming.cells.back());
+  take_reference(given.drives->itinerary_of(0), result);
+  if (score == TuningScore::innovations) {
+    print_findings(result, confirm_by_innovations(confirming, plan, parallel),
+                   confirming.cells.back());
+  } else if (score == TuningScore::reference) {
+    print_findings(result, confirm_by_reference(confirming, plan, parallel),
+                   confirming.cells.back());
   } else {
     if (folder) make_directory(*folder);
     TuningConfirmation confirmation = confirm_on_runs(confirming, plan, parallel);

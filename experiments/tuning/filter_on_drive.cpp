@@ -25,7 +25,8 @@ bool is_finite(const PoseMoments& moments) {
 }
 
 /// Runs the steps until the last scan. Returns whether every estimate was finite.
-bool take_steps(const DrivePart& part, SlamFilter& filter, const AfterScan& after_scan) {
+bool take_steps(const DrivePart& part, SlamFilter& filter, const AfterScan& after_scan,
+                const AfterStep& after_step) {
   const engine::RunInput input = input_of(part);
   std::size_t scan = 0;
   for (std::size_t step = 0; step < input.itinerary.steps() && scan < part.scans; ++step) {
@@ -39,16 +40,18 @@ bool take_steps(const DrivePart& part, SlamFilter& filter, const AfterScan& afte
       return true;
     };
     if (!engine::take_step(filter, context, input, scan, at_scan)) return false;
+    if (after_step) after_step(step, filter);
   }
   return true;
 }
 
 }  // namespace
 
-bool run_filter(const DrivePart& part, SlamFilter& filter, const AfterScan& after_scan) {
+bool run_filter(const DrivePart& part, SlamFilter& filter, const AfterScan& after_scan,
+                const AfterStep& after_step) {
   try {
     engine::start_filter(filter, context_at(part, 0), input_of(part));
-    return take_steps(part, filter, after_scan);
+    return take_steps(part, filter, after_scan, after_step);
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const RunError&) {

@@ -24,9 +24,13 @@ struct DrivePart {
 /// Called after each scan, whether the filter was given it or not.
 using AfterScan = std::function<void(std::size_t scan, const SlamFilter& filter, bool is_given)>;
 
+/// Called after each step, when the filter was given the scans that end it.
+using AfterStep = std::function<void(std::size_t step, const SlamFilter& filter)>;
+
 /// Runs a filter on the part. Returns false if the filter throws or its pose is not finite at a
 /// scan; failures of the machine are thrown.
-bool run_filter(const DrivePart& part, SlamFilter& filter, const AfterScan& after_scan);
+bool run_filter(const DrivePart& part, SlamFilter& filter, const AfterScan& after_scan,
+                const AfterStep& after_step = {});
 
 /// The Gaussian of an estimate that proper scores judge (STATISTICS 7).
 const PoseMoments& judged_moments(const PoseEstimate& estimate);

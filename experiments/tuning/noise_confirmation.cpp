@@ -5,6 +5,7 @@
 #include "analysis/statistics/conformal.hpp"
 #include "analysis/statistics/distributions.hpp"
 #include "analysis/statistics/spread.hpp"
+#include "analysis/verdict/drive_verdict.hpp"
 #include "analysis/verdict/innovations.hpp"
 #include "engine/core/judgement.hpp"
 #include "engine/formatted.hpp"
@@ -12,6 +13,7 @@
 #include "experiments/study/make_plan.hpp"
 #include "experiments/tuning/filter_on_drive.hpp"
 #include "experiments/tuning/noise_factors.hpp"
+#include "experiments/tuning/reference_half.hpp"
 #include "experiments/tuning/scores.hpp"
 
 #include <algorithm>
@@ -26,6 +28,8 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Stretches of the second halves, whose scores count as independent.
 constexpr std::size_t kStretchesToConfirm = 20;
+/// The same of errors at fixes, which last longer than innovations.
+constexpr std::size_t kStretchesOfFixes = 10;
 
 /// The cells of a confirming study.
 enum CellToConfirm : std::size_t { as_it_was, tuned };
@@ -66,22 +70,50 @@ ConfirmedRun confirmed_run(const StudyPlan& plan, std::uint64_t run, const Drive
   return {true, score.mean(), last, largest};
 }
 
-ScoreDifference mean_difference(const std::vector<double>& differences) {
+/// The mean of the differences, which are worth at most `effective` independent ones.
+ScoreDifference mean_difference(const std::vector<double>& differences,
+                                double effective = kInfinity) {
   SummaryOf sums;
   for (const double difference : differences) {
     if (!std::isnan(difference)) sums.add(difference);
   }
   const Summary summary = sums.result();
-  return {summary.mean, summary.interval(kUsualLevel)};
+  const double n = std::min(static_cast<double>(summary.n), std::max(effective, 1.0));
+  const double half = t_of_samples(n) * summary.sd / std::sqrt(n);
+  return {summary.mean, {summary.mean - half, summary.mean + half}};
 }
 
-/// Innovations of one cell in the second half of one drive.
-struct SecondHalf {
+/// Scores of one cell in stretches of the second half of one drive.
+struct ScoredHalf {
   std::array<ScoreSum, kStretchesToConfirm> scores;
-  std::vector<double> times, nis;
-  std::vector<std::uint32_t> dof;
   bool is_whole = false;
 };
+
+/// Innovations of one cell in the second half of one drive.
+struct SecondHalf : ScoredHalf {
+  std::vector<double> times, nis;
+  std::vector<std::uint32_t> dof;
+};
+
+/// Errors of one cell at the fixes of the second half of one drive.
+struct SecondFixes : ScoredHalf {
+  DriveScores drive;
+};
+
+SecondFixes second_fixes(const StudyPlan& plan, std::uint64_t run, const Drive& drive,
+                         const Cell& cell) {
+  const Itinerary& itinerary = plan.drives->itinerary_of(run);
+  const ReferenceHalf half(itinerary, DriveHalf::second);
+  SecondFixes found;
+  const auto estimates = half.estimates_on({plan, run, drive, half.scans()}, *cell.make_filter());
+  found.is_whole = estimates.has_value();
+  if (!estimates) return found;
+  const std::vector<double> scores = half.log_scores(*estimates);
+  for (std::size_t f = 0; f < scores.size(); ++f)
+    found.scores[f * kStretchesOfFixes / scores.size()].add(scores[f]);
+  found.drive = half.drive_scores(itinerary, *estimates, cell.particles);
+  return found;
+}
 
 SecondHalf second_half(const StudyPlan& plan, std::uint64_t run, const Drive& drive,
                        const Cell& cell, const InnovationScore& score) {
@@ -111,7 +143,7 @@ std::uint64_t failed_in(const std::vector<std::array<Findings, 2>>& runs, CellTo
 }
 
 /// Differences of the mean scores of each stretch.
-void add_differences(const SecondHalf& before, const SecondHalf& after,
+void add_differences(const ScoredHalf& before, const ScoredHalf& after,
                      std::vector<double>& differences) {
   for (std::size_t k = 0; k < kStretchesToConfirm; ++k) {
     const ScoreSum &old_score = before.scores[k], &new_score = after.scores[k];
@@ -189,17 +221,30 @@ TuningConfirmation confirm_on_runs(const Study& study, const StudyPlan& plan,
           .covering_path = conformal_bound(of_path, kUsualLevel) / quantile};
 }
 
-TuningConfirmation confirm_on_drives(const Study& study, const StudyPlan& plan,
-                                     const Parallel& parallel) {
-  const std::size_t drives = std::max<std::size_t>(plan.drives->own_drives(), 1);
-  std::vector<std::array<SecondHalf, 2>> halves(drives);
-  parallel.for_each(drives, [&](std::size_t run) {
+namespace {
+
+/// Calls find(run, drive, cell) for both cells on each recorded drive.
+template <class Findings, class Find>
+std::vector<std::array<Findings, 2>> of_both_cells(const StudyPlan& plan, const Parallel& parallel,
+                                                   const Find& find) {
+  std::vector<std::array<Findings, 2>> halves(std::max<std::size_t>(plan.drives->own_drives(), 1));
+  parallel.for_each(halves.size(), [&](std::size_t run) {
     Drive drive;
     plan.drives->generate(run, drive);
-    for (std::size_t cell = 0; cell < 2; ++cell)
-      halves[run][cell] = second_half(plan, run, drive, plan.cells[cell],
-                                      InnovationScore(study, study.cells[cell]));
+    for (std::size_t cell = 0; cell < 2; ++cell) halves[run][cell] = find(run, drive, cell);
   });
+  return halves;
+}
+
+}  // namespace
+
+TuningConfirmation confirm_by_innovations(const Study& study, const StudyPlan& plan,
+                                          const Parallel& parallel) {
+  auto halves = of_both_cells<SecondHalf>(
+      plan, parallel, [&](std::size_t run, const Drive& drive, std::size_t cell) {
+        return second_half(plan, run, drive, plan.cells[cell],
+                           InnovationScore(study, study.cells[cell]));
+      });
   const std::uint64_t before = failed_in(halves, as_it_was), after = failed_in(halves, tuned);
   std::vector<double> gains;
   std::vector<SecondHalf> of_tuned;
@@ -207,7 +252,7 @@ TuningConfirmation confirm_on_drives(const Study& study, const StudyPlan& plan,
     add_differences(half[as_it_was], half[tuned], gains);
     of_tuned.push_back(std::move(half[tuned]));
   }
-  TuningConfirmation confirmation{.runs = drives,
+  TuningConfirmation confirmation{.runs = halves.size(),
                                   .failed_before = before,
                                   .failed_after = after,
                                   .gain = mean_difference(gains),
@@ -215,6 +260,35 @@ TuningConfirmation confirm_on_drives(const Study& study, const StudyPlan& plan,
                                   .covering_path = kNaN};
   judge_innovations(std::move(of_tuned), study.settings.number("study", "within"), confirmation);
   return confirmation;
+}
+
+TuningConfirmation confirm_by_reference(const Study& study, const StudyPlan& plan,
+                                        const Parallel& parallel) {
+  const auto halves = of_both_cells<SecondFixes>(
+      plan, parallel, [&](std::size_t run, const Drive& drive, std::size_t cell) {
+        return second_fixes(plan, run, drive, plan.cells[cell]);
+      });
+  std::vector<double> gains;
+  std::vector<DriveScores> of_tuned;
+  for (const auto& half : halves) {
+    add_differences(half[as_it_was], half[tuned], gains);
+    if (half[tuned].is_whole) of_tuned.push_back(half[tuned].drive);
+  }
+  const double within = study.settings.number("study", "within");
+  const DriveConsistency found = halves.size() == 1
+                                     ? judge_drive(of_tuned, kUsualLevel, within)
+                                     : judge_own_drives(of_tuned, kUsualLevel, within);
+  const double effective = found.mean.leads().effective_samples;
+  return {.runs = halves.size(),
+          .failed_before = failed_in(halves, as_it_was),
+          .failed_after = failed_in(halves, tuned),
+          .gain = mean_difference(gains, effective),
+          .answer = found.answer,
+          .verdict = in_words(found),
+          .covering_at_end = kNaN,
+          .covering_path = kNaN,
+          .fixes = found.mean.fixes,
+          .effective = effective};
 }
 
 }  // namespace montecarta::experiments

@@ -21,9 +21,14 @@ Study confirming_study(const Study& study, const CellSpec& cell, const TunedNois
 TuningConfirmation confirm_on_runs(const Study& study, const StudyPlan& plan,
                                    const Parallel& parallel);
 
-/// Compares both cells on the second half of each recorded drive, with a verdict on the innovations
-/// of the second cell there. `plan` is that of `study`.
-TuningConfirmation confirm_on_drives(const Study& study, const StudyPlan& plan,
-                                     const Parallel& parallel);
+/// Compares both cells by their innovations in the second half of each recorded drive, with a
+/// verdict on those of the second cell. `plan` is that of `study`.
+TuningConfirmation confirm_by_innovations(const Study& study, const StudyPlan& plan,
+                                          const Parallel& parallel);
+
+/// Compares both cells by their errors at the fixes of a reference in the second half of each
+/// recorded drive, with a verdict on those of the second cell (STATISTICS 20).
+TuningConfirmation confirm_by_reference(const Study& study, const StudyPlan& plan,
+                                        const Parallel& parallel);
 
 }  // namespace montecarta::experiments

@@ -2,8 +2,10 @@
 #include "experiments/tuning/noise_landscape.hpp"
 
 #include "analysis/statistics/conformal.hpp"
+#include "analysis/verdict/drive_verdict.hpp"
 #include "engine/core/judgement.hpp"
 #include "engine/errors.hpp"
+#include "engine/formatted.hpp"
 #include "experiments/tuning/filter_on_drive.hpp"
 
 #include <algorithm>
@@ -13,15 +15,24 @@
 namespace montecarta::experiments {
 namespace {
 
-/// Fewest parts into which recorded drives are divided.
-constexpr std::uint64_t kStretches = 20;
+/// Fewest parts into which recorded drives are divided. Errors of the pose last longer than
+/// innovations, and neighbouring stretches must hardly depend on each other.
+constexpr std::uint64_t kStretches = 20, kStretchesOfErrors = 10;
+
+std::size_t parts_of_a_run(TuningScore score, std::uint64_t runs) {
+  if (score == TuningScore::truth) return 1;
+  const auto parts = score == TuningScore::reference ? kStretchesOfErrors : kStretches;
+  return (parts + runs - 1) / runs;
+}
+
 /// Fewest scans that a run must have for each scan of a prediction interval, or a stretch of a
 /// drive.
 constexpr std::size_t kFewestScans = 2;
+/// Fewest fixes of a reference in a stretch of a drive.
+constexpr std::size_t kFewestFixes = 2;
 
-std::uint64_t runs_to_learn_from(const Study& study, const StudyPlan& plan) {
-  if (!plan.drives->itinerary().has_truth)
-    return std::max<std::uint64_t>(plan.drives->own_drives(), 1);
+std::uint64_t runs_to_learn_from(const Study& study, const StudyPlan& plan, TuningScore score) {
+  if (score != TuningScore::truth) return std::max<std::uint64_t>(plan.drives->own_drives(), 1);
   const std::uint64_t fewest = fewest_for_bound(kUsualLevel);
   if (plan.runs >= fewest) return plan.runs;
   throw StudyError(
@@ -37,14 +48,21 @@ NoiseFactors factors_at(const LatticePoint& point) {
   return {factor_at(point.motion), factor_at(point.sensor)};
 }
 
-NoiseLandscape::NoiseLandscape(const Study& study, const CellSpec& cell, const Parallel& parallel)
+NoiseLandscape::NoiseLandscape(const Study& study, const CellSpec& cell, TuningScore score,
+                               const Parallel& parallel)
     : study_(study_of_cells(study, {cell}, study.settings.count("study", "runs"),
                             study.settings.count("study", "seed"))),
       cell_(cell),
       parallel_(parallel),
       plan_(make_plan(study_)),
-      runs_(runs_to_learn_from(study, plan_)),
-      parts_of_run_(has_truth() ? 1 : (kStretches + runs_ - 1) / runs_) {
+      score_(score),
+      runs_(runs_to_learn_from(study, plan_, score)),
+      parts_of_run_(parts_of_a_run(score, runs_)) {
+  find_intervals(study);
+  if (score_ == TuningScore::reference) take_references();
+}
+
+void NoiseLandscape::find_intervals(const Study& study) {
   std::size_t fewest = std::numeric_limits<std::size_t>::max();
   for (std::uint64_t run = 0; run < runs_; ++run)
     fewest = std::min(fewest, scans_of(run) - first_scan_of(run));
@@ -56,6 +74,29 @@ NoiseLandscape::NoiseLandscape(const Study& study, const CellSpec& cell, const P
       "{}: {} scans (too few to choose noise by): take a longer drive, with at least {} {}",
       study.settings.place("study", "name"), fewest, kFewestScans * parts_of_run_,
       has_truth() ? "scans" : "scans in its first half");
+}
+
+void NoiseLandscape::take_references() {
+  for (std::uint64_t run = 0; run < runs_; ++run) {
+    const ReferenceHalf& half =
+        references_.emplace_back(plan_.drives->itinerary_of(run), DriveHalf::first);
+    const std::string place = formatted("{}: drive {}", cell_.place, run + 1);
+    const std::size_t n = half.fixes().times().size();
+    if (n < kFewestFixes * parts_of_run_) {
+      throw StudyError(
+          "{}: {} fixes of reference {} in its first half (too few to choose noise by): take a "
+          "reference with {} or more there, or add --by innovations",
+          place, n, half.fixes().name(), kFewestFixes * parts_of_run_);
+    }
+    const Cell& cell = plan_.cells.front();
+    const auto estimates = estimates_of(cell, run);
+    if (!estimates) continue;
+    refuse_strange_reference(half, *estimates, place);
+    const DriveScores scores =
+        half.drive_scores(plan_.drives->itinerary_of(run), *estimates, cell.particles);
+    fixes_ += scores.fixes;
+    outliers_ += scores.outliers;
+  }
 }
 
 std::size_t NoiseLandscape::scans_of(std::uint64_t run) const {
@@ -105,21 +146,63 @@ void NoiseLandscape::compute(const std::vector<Work>& work, std::uint64_t runs) 
 
 void NoiseLandscape::score(const Work& work, std::uint64_t run, const Drive& drive,
                            std::size_t interval) const {
-  const Itinerary& itinerary = plan_.drives->itinerary_of(run);
   const DrivePart part{plan_, run, drive, scans_of(run), kPredictionIntervals[interval]};
-  const std::size_t first = first_scan_of(run);
-  const std::unique_ptr<SlamFilter> filter = work.cell->make_filter();
-  const bool is_whole =
-      run_filter(part, *filter, [&](std::size_t scan, const SlamFilter& now, bool is_given) {
-        if (scan < first || (!has_truth() && !is_given)) return;
-        const double score =
-            has_truth() ? pose_score(now.estimate(), drive.truth[itinerary.scan_step[scan]])
-                        : work.innovation_score(now.report(), drive.scan(scan));
-        if (std::isnan(score)) return;
-        const std::size_t stretch = scan * parts_of_run_ / part.scans;
-        work.point->parts[run * parts_of_run_ + stretch][interval].add(score);
-      });
+  const bool is_whole = score_ == TuningScore::reference ? score_fixes(work, part, interval)
+                                                         : score_scans(work, part, interval);
   work.point->has_failed[run * kPredictionIntervals.size() + interval] = is_whole ? 0 : 1;
+}
+
+ScoreSum& NoiseLandscape::scores_at(const Work& work, std::uint64_t run, std::size_t part,
+                                    std::size_t interval) const {
+  return work.point->parts[run * parts_of_run_ + part][interval];
+}
+
+bool NoiseLandscape::score_scans(const Work& work, const DrivePart& part,
+                                 std::size_t interval) const {
+  const Itinerary& itinerary = plan_.drives->itinerary_of(part.run);
+  const std::size_t first = first_scan_of(part.run);
+  const std::unique_ptr<SlamFilter> filter = work.cell->make_filter();
+  return run_filter(part, *filter, [&](std::size_t scan, const SlamFilter& now, bool is_given) {
+    if (scan < first || (!has_truth() && !is_given)) return;
+    const double score =
+        has_truth() ? pose_score(now.estimate(), part.drive.truth[itinerary.scan_step[scan]])
+                    : work.innovation_score(now.report(), part.drive.scan(scan));
+    if (std::isnan(score)) return;
+    scores_at(work, part.run, scan * parts_of_run_ / part.scans, interval).add(score);
+  });
+}
+
+bool NoiseLandscape::score_fixes(const Work& work, const DrivePart& part,
+                                 std::size_t interval) const {
+  const ReferenceHalf& half = references_[part.run];
+  const auto estimates = half.estimates_on(part, *work.cell->make_filter());
+  if (!estimates) return false;
+  const std::vector<double> scores = half.log_scores(*estimates);
+  for (std::size_t f = 0; f < scores.size(); ++f)
+    scores_at(work, part.run, f * parts_of_run_ / scores.size(), interval).add(scores[f]);
+  return true;
+}
+
+std::optional<RunRows> NoiseLandscape::estimates_of(const Cell& cell, std::uint64_t run) const {
+  Drive drive;
+  plan_.drives->generate(run, drive);
+  return references_[run].estimates_on({plan_, run, drive, scans_of(run)}, *cell.make_filter());
+}
+
+double NoiseLandscape::effective_samples(const LatticePoint& point) const {
+  if (score_ != TuningScore::reference) return static_cast<double>(parts());
+  Study study = study_;
+  study.cells = {with_noise(cell_, factors_at(point), cell_.label)};
+  const StudyPlan plan = make_plan(study);
+  std::vector<DriveScores> scores;
+  for (std::uint64_t run = 0; run < runs_; ++run) {
+    const Cell& cell = plan.cells.front();
+    if (const auto estimates = estimates_of(cell, run)) {
+      scores.push_back(references_[run].drive_scores(plan_.drives->itinerary_of(run), *estimates,
+                                                     cell.particles));
+    }
+  }
+  return judge_own_drives(scores, kUsualLevel, kUsualMargin).mean.leads().effective_samples;
 }
 
 double NoiseLandscape::mean(const LatticePoint& where, std::uint64_t runs,

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "analysis/study/tuning.hpp"
 #include "engine/threads/parallel.hpp"
 #include "experiments/study/make_plan.hpp"
 #include "experiments/tuning/noise_factors.hpp"
+#include "experiments/tuning/reference_half.hpp"
 #include "experiments/tuning/scores.hpp"
 
 #include <array>
@@ -43,14 +45,17 @@ using PartScores = std::array<ScoreSum, kPredictionIntervals.size()>;
 using Intervals = std::vector<std::size_t>;
 
 /// The scores of one cell as functions of the noise that it assumes, computed where they are asked
-/// for: the log score of the pose at all scans where there is a truth, or else that of the
-/// innovations in the first half of each recorded drive.
+/// for: the log score of the pose at all scans where there is a truth, or else that of the errors
+/// at the fixes of a reference, or of the innovations, in the first half of each recorded drive.
 class NoiseLandscape {
  public:
-  /// Throws StudyError if there are too few runs or scans to learn from.
-  NoiseLandscape(const Study& study, const CellSpec& cell, const Parallel& parallel);
+  /// Throws StudyError if there are too few runs, scans or fixes to learn from, or if the cell as
+  /// it is shows that the reference cannot be used.
+  NoiseLandscape(const Study& study, const CellSpec& cell, TuningScore score,
+                 const Parallel& parallel);
 
-  bool has_truth() const { return plan_.drives->itinerary().has_truth; }
+  TuningScore score() const { return score_; }
+  bool has_truth() const { return score_ == TuningScore::truth; }
   /// Number of runs, or of recorded drives.
   std::uint64_t runs() const { return runs_; }
   /// Number of parts of the data, which count as independent: runs, or stretches of drives.
@@ -67,6 +72,13 @@ class NoiseLandscape {
   bool has_failed(const LatticePoint& point, std::uint64_t runs, const Intervals& intervals) const;
   /// {part} Shares of the parts in mean() of all runs, which has the mean over parts.
   std::vector<double> shares(const LatticePoint& point, const Intervals& intervals) const;
+  /// The number of independent samples whose average NEES varies as much as that of the errors at
+  /// the fixes (STATISTICS 20), with the noise of a point; parts() if no reference is used.
+  double effective_samples(const LatticePoint& point) const;
+  /// Number of fixes that are scored, and of gross outliers among them by the cell as it is
+  /// (STATISTICS 20); 0 if no reference is used.
+  std::size_t fixes() const { return fixes_; }
+  std::size_t outliers() const { return outliers_; }
 
  private:
   /// The scores of a point.
@@ -87,13 +99,24 @@ class NoiseLandscape {
   std::size_t first_scan_of(std::uint64_t run) const;
   void compute(const std::vector<Work>& work, std::uint64_t runs) const;
   void score(const Work& work, std::uint64_t run, const Drive& drive, std::size_t interval) const;
+  bool score_scans(const Work& work, const DrivePart& part, std::size_t interval) const;
+  bool score_fixes(const Work& work, const DrivePart& part, std::size_t interval) const;
+  ScoreSum& scores_at(const Work& work, std::uint64_t run, std::size_t part,
+                      std::size_t interval) const;
+  /// The estimates of the cell of a study at the fixes of a drive; nullopt if it fails.
+  std::optional<RunRows> estimates_of(const Cell& cell, std::uint64_t run) const;
+  void take_references();
+  void find_intervals(const Study& study);
 
   Study study_;
   CellSpec cell_;
   const Parallel& parallel_;
   StudyPlan plan_;
+  TuningScore score_;
   std::uint64_t runs_;
   std::size_t parts_of_run_;
+  std::vector<ReferenceHalf> references_;  ///< {run} empty if no reference is used
+  std::size_t fixes_ = 0, outliers_ = 0;
   Intervals intervals_;
   std::map<LatticePoint, ScoredPoint> points_;
 };

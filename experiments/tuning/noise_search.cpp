@@ -49,6 +49,18 @@ std::vector<LatticePoint> grid_about(const LatticePoint& centre, int sides, int 
   return points;
 }
 
+/// Multiplies the standard errors by `apart` and the reach of the intervals by `reach`.
+void widen(double apart, double reach, TunedNoise& noise) {
+  noise.motion_apart *= apart;
+  noise.sensor_apart *= apart;
+  for (TunedFactor* factor : {&noise.motion, &noise.sensor}) {
+    factor->interval.lower =
+        factor->value * std::pow(factor->interval.lower / factor->value, reach);
+    factor->interval.upper =
+        factor->value * std::pow(factor->interval.upper / factor->value, reach);
+  }
+}
+
 /// A search on one landscape by some prediction intervals.
 class NoiseSearch {
  public:
@@ -122,7 +134,7 @@ class NoiseSearch {
   TunedFactor factor_of(double logarithm, double variance, bool is_free) const {
     if (!is_free) return {1.0, {kNaN, kNaN}};
     const double reach =
-        t_score(kUsualLevel, static_cast<double>(landscape_->parts()) - 1.0) * std::sqrt(variance);
+        t_of_samples(static_cast<double>(landscape_->parts())) * std::sqrt(variance);
     return {std::exp(logarithm), {std::exp(logarithm - reach), std::exp(logarithm + reach)}};
   }
 
@@ -188,39 +200,67 @@ std::string factors_text(const LatticePoint& point) {
                    readable(factor_at(point.sensor)));
 }
 
-void refuse_no_minimum(const CellSpec& cell, const LatticePoint& least, const Axes& is_free) {
+/// What helps if a score has no minimum.
+std::string remedy_for_no_minimum(std::size_t outliers) {
+  if (outliers == 0)
+    return "use more runs or a longer drive, or check the other settings of [belief]";
+  return formatted(
+      "{} of the fixes {}: leave such fixes out of the reference, or give them the "
+      "sigmas that they really have",
+      outliers, outliers == 1 ? "is a gross outlier" : "are gross outliers");
+}
+
+[[noreturn]] void refuse_no_minimum(const CellSpec& cell, const LatticePoint& least,
+                                    const Axes& is_free, std::size_t outliers) {
   const bool is_at_end = std::max(std::abs(least.motion), std::abs(least.sensor)) == kFarthest;
   const std::string why = is_at_end ? "it falls as far as factors of 64"
                           : is_free[0] && is_free[1]
                               ? "no surface fits it, or the filter fails near by"
                               : "the filter fails near by";
-  throw StudyError(
-      "{}: cell {}: its score has no minimum near {} ({}): use more runs or a longer drive, or "
-      "check the other settings of [belief]",
-      cell.place, cell.label, factors_text(least), why);
+  throw StudyError("{}: cell {}: its score has no minimum near {} ({}): {}", cell.place, cell.label,
+                   factors_text(least), why, remedy_for_no_minimum(outliers));
+}
+
+/// Widens the intervals for `effective` independent samples, if they are fewer than the parts: the
+/// errors then last longer than a part (STATISTICS 23). If no error could be judged, it counts as
+/// one.
+void take_memory(double effective, TuningResult& result) {
+  const auto parts = static_cast<double>(result.parts);
+  result.effective = effective;
+  if (effective >= parts) return;
+  effective = std::max(effective, 1.0);
+  const double apart = std::sqrt(parts / effective);
+  const double reach = apart * t_of_samples(effective) / t_of_samples(parts);
+  widen(apart, reach, result.noise);
+  for (TunedByInterval& one : result.by_interval) {
+    if (one.noise) widen(apart, reach, *one.noise);
+  }
 }
 
 }  // namespace
 
-TuningResult find_noise(const Study& study, const CellSpec& cell, const Parallel& parallel) {
-  NoiseLandscape landscape(study, cell, parallel);
+TuningResult find_noise(const Study& study, const CellSpec& cell, TuningScore score,
+                        const Parallel& parallel) {
+  NoiseLandscape landscape(study, cell, score, parallel);
   const Axes is_free = free_axes(landscape, std::min(kRunsOfSearch, landscape.runs()));
   if (!is_free[0] && !is_free[1]) {
     throw StudyError(
         "{}: cell {} has the same score with any noise (it assumes none, or nothing is {}): tune a "
         "filter that uses the noise of [belief]",
-        cell.place, cell.label, landscape.has_truth() ? "scored" : "predicted");
+        cell.place, cell.label, score == TuningScore::innovations ? "predicted" : "scored");
   }
   const NoiseSearch search(landscape, landscape.intervals(), is_free);
   const LatticePoint octave = search.descend({}, kGridSides, kOctave);
   const LatticePoint least = search.descend(search.descend(octave, 1, 4), 1, 2);
   const auto noise = search.fitted_near(least);
-  if (!noise) refuse_no_minimum(cell, least, is_free);
+  if (!noise) refuse_no_minimum(cell, least, is_free, landscape.outliers());
   TuningResult result{.cell = cell.label,
-                      .has_truth = landscape.has_truth(),
+                      .score = score,
                       .runs = landscape.runs(),
                       .has_gate = study.settings.text("association", "kind") == "nearest",
                       .parts = landscape.parts(),
+                      .fixes = landscape.fixes(),
+                      .outliers = landscape.outliers(),
                       .noise = *noise,
                       .grid = grid_of(landscape, octave, is_free)};
   for (const std::size_t interval : landscape.intervals()) {
@@ -228,6 +268,7 @@ TuningResult find_noise(const Study& study, const CellSpec& cell, const Parallel
     const LatticePoint near = alone.descend(alone.descend(least, 1, 4), 1, 2);
     result.by_interval.push_back({kPredictionIntervals[interval], alone.fitted_near(near)});
   }
+  take_memory(landscape.effective_samples(least), result);
   return result;
 }
 

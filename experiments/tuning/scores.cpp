@@ -2,12 +2,20 @@
 #include "experiments/tuning/scores.hpp"
 
 #include "analysis/run/nees.hpp"
+#include "analysis/statistics/distributions.hpp"
+#include "engine/core/judgement.hpp"
 #include "experiments/study/vehicle_and_sensor.hpp"
 #include "experiments/tuning/filter_on_drive.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace montecarta::experiments {
+
+double t_of_samples(double n) {
+  constexpr double kFewestFreedom = 0.5;
+  return t_score(kUsualLevel, std::max(n - 1.0, kFewestFreedom));
+}
 
 double pose_score(const PoseEstimate& estimate, const Pose& truth) {
   const PoseMoments& judged = judged_moments(estimate);

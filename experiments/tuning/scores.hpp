@@ -22,6 +22,10 @@ struct ScoreSum {
   double mean() const { return sum / n; }
 };
 
+/// Student's score at the usual level for the mean of `n` independent samples, which need not be a
+/// whole number. Fewer than two say hardly anything, and have a finite score all the same.
+double t_of_samples(double n);
+
 /// The log score of the pose after a scan (STATISTICS 7); NaN where its covariance is singular.
 double pose_score(const PoseEstimate& estimate, const Pose& truth);
 

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/random/stream.hpp"
 #include "tests/experiments/commands/program.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <regex>
 #include <sstream>
 
@@ -57,6 +61,34 @@ sigma_bearing_deg = 0.5
 cell = ekf_slam
 )";
 
+/// The truth of an exported drive as a reference with the errors of `deviation` [m], and a fifth of
+/// it in radians, at every fourth step. Positions are multiplied by `unit`. Without `states_errors`
+/// its header names no errors.
+std::string measured_reference(const std::string& truth, double deviation, double unit = 1.0,
+                               bool states_errors = true) {
+  std::istringstream lines(truth);
+  std::ostringstream out;
+  out.precision(17);
+  std::string line;
+  std::getline(lines, line);
+  out << line << (states_errors ? ",sigma_x_m,sigma_y_m,sigma_heading_rad\n" : "\n");
+  for (std::uint32_t row = 1; std::getline(lines, line); ++row) {
+    if (row % 4 != 0) continue;
+    std::array<double, 4> fix{};
+    std::ranges::replace(line, ',', ' ');
+    std::istringstream fields(line);
+    for (double& field : fix) fields >> field;
+    RngStream draw({1, 0, row, 0, Draw::world_fix});
+    fix[1] = unit * (fix[1] + deviation * draw.normal());
+    fix[2] = unit * (fix[2] + deviation * draw.normal());
+    fix[3] += deviation / 5.0 * draw.normal();
+    out << fix[0] << ',' << fix[1] << ',' << fix[2] << ',' << fix[3];
+    if (states_errors) out << ',' << deviation << ',' << deviation << ',' << deviation / 5.0;
+    out << '\n';
+  }
+  return out.str();
+}
+
 /// A factor as the table prints it: "2.01 [1.97, 2.05]".
 struct PrintedFactor {
   double value = 0.0, lower = 0.0, upper = 0.0;
@@ -85,6 +117,18 @@ void expect_holds(const PrintedFactor& factor, double truth) {
 
 class Tune : public Program {
  protected:
+  /// Exports a drive of the ring, without its truth, and writes the study of it.
+  void record_drive() {
+    const Called exported =
+        call({"export", "ring.ini", "-o", "drives", "--set", "scenario.loops=8", "--runs", "0:1"});
+    ASSERT_EQ(exported.code, 0) << exported.err;
+    write("log.ini", kTunedLog);
+  }
+  void give_reference(double unit = 1.0, bool states_errors = true) {
+    write("drives/runs/run_0000/reference.csv",
+          measured_reference(text_of("drives/truth/run_0000/reference.csv"), 0.05, unit,
+                             states_errors));
+  }
   Tune() {
     write("ring.ini", kTunedStudy);
     write("ring.csv", kRing);
@@ -165,10 +209,7 @@ TEST_F(Tune, WritesTheLandscapeAndTheConfirmingStudy) {
 }
 
 TEST_F(Tune, TakesADriveWithoutTruthByItsInnovations) {
-  const Called exported =
-      call({"export", "ring.ini", "-o", "drives", "--set", "scenario.loops=8", "--runs", "0:1"});
-  ASSERT_EQ(exported.code, 0) << exported.err;
-  write("log.ini", kTunedLog);
+  record_drive();
   const Called called = call({"tune", "log.ini"});
   ASSERT_EQ(called.code, 0) << called.err;
   const auto factors = factors_in(called.out, "all");
@@ -180,6 +221,56 @@ TEST_F(Tune, TakesADriveWithoutTruthByItsInnovations) {
   write("log.ini", std::string(kTunedLog).erase(kTunedLog.find(of_map), of_map.size()));
   expect_refused({"tune", "log.ini", "--set", "cells.cell=dead_reckoning"},
                  "has the same score with any noise");
+}
+
+TEST_F(Tune, TakesADriveByItsErrorsAgainstAReference) {
+  record_drive();
+  give_reference();
+  const Called called = call({"tune", "log.ini", "--set", "belief.sigma_speed=0.05", "--set",
+                              "belief.sigma_steer_deg=0.5"});
+  ASSERT_EQ(called.code, 0) << called.err;
+  const auto factors = factors_in(called.out, "all");
+  ASSERT_EQ(factors.size(), 2U) << called.out;
+  expect_holds(factors[0], 2.0);
+  expect_holds(factors[1], 2.0);
+  EXPECT_THAT(called.out, HasSubstr("errors at the fixes of reference in the first"));
+  EXPECT_THAT(called.out, HasSubstr("errors against reference in the second"));
+  EXPECT_THAT(call({"tune", "log.ini", "--by", "innovations"}).out,
+              HasSubstr("innovations of the second half"));
+}
+
+TEST_F(Tune, NamesGrossOutliersOfTheReferenceFirst) {
+  record_drive();
+  const std::string name = "drives/runs/run_0000/reference.csv";
+  const auto tune_with_fix_off_by = [&](double distance) {
+    give_reference();
+    std::string fixes = text_of(name);
+    const std::size_t row = fixes.find('\n', fixes.size() / 4);
+    const std::size_t x = fixes.find(',', row) + 1, end = fixes.find(',', x);
+    const double wild = std::stod(fixes.substr(x, end - x)) + distance;
+    write(name, fixes.replace(x, end - x, std::to_string(wild)));
+    return call({"tune", "log.ini"});
+  };
+  EXPECT_THAT(tune_with_fix_off_by(2.0).out, testing::StartsWith("1 of the "));
+  EXPECT_THAT(tune_with_fix_off_by(400.0).err, HasSubstr("1 of the fixes is a gross outlier"));
+}
+
+TEST_F(Tune, TakesAReferenceWithoutErrorsForExactOnlyIfItIsAskedTo) {
+  record_drive();
+  give_reference(1.0, false);
+  EXPECT_THAT(call({"tune", "log.ini"}).out, HasSubstr("because it states no errors"));
+  EXPECT_THAT(call({"tune", "log.ini", "--by", "reference"}).out, HasSubstr("counts as exact"));
+}
+
+TEST_F(Tune, RefusesAReferenceThatNoNoiseExplains) {
+  record_drive();
+  expect_refused({"tune", "log.ini", "--by", "reference"}, "the drive has no reference");
+  expect_refused({"tune", "log.ini", "--by", "truth"}, "--by truth: no such score");
+  expect_refused({"tune", "ring.ini", "--by", "innovations"}, "this study is simulated");
+  for (const double unit : {0.01, 100.0}) {
+    give_reference(unit);
+    expect_refused({"tune", "log.ini"}, "correct unit, frame or times of the reference");
+  }
 }
 
 TEST_F(Tune, TakesNoFailureForAScore) {
