@@ -33,8 +33,6 @@ std::string reason_against_map(const std::string& filter) {
       {"external", "the protocol of programs has no message for a map"},
       {"smoother", "it estimates the whole path from an exact first pose"},
       {"relative", "its landmarks are relative to poses along the path, not to the world"},
-      {"marginal", "it learns one map for all particles; fastslam1 localises by particles"},
-      {"ampf", "it learns one map for all particles; fastslam1 localises by particles"},
       {"fej_ekf", "it is made for directions that no detection shows; a known map has none"},
       {"oc_ekf", "it is made for directions that no detection shows; a known map has none"},
       {"robocentric", "it is made for directions that no detection shows; a known map has none"}};

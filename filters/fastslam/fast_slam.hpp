@@ -41,12 +41,11 @@ class FastSlam final : public SlamFilter {
     population_.start();
     maps_.clear();
     association_.start();
-    const Pose& start = prior.pose.mean;
-    std::ranges::fill(poses_, BasicPose<Real>{start.x, start.y, start.heading});
     if constexpr (KeepsGaussians<Proposal>) {
+      draw_start(context, {.mean = prior.pose.mean}, poses_);
       proposal_.start(prior.pose);
-    } else if (!prior.pose.covariance.isZero(0.0)) {
-      draw_start(context, prior.pose.covariance);
+    } else {
+      draw_start(context, prior.pose, poses_);
     }
     association_.add_known(context, prior.map, maps_);
   }
@@ -92,15 +91,6 @@ class FastSlam final : public SlamFilter {
   }
 
  private:
-  void draw_start(const StepContext& context, const Eigen::Matrix3d& covariance) {
-    const PoseFactor<Real> factor(
-        PoseGaussian<Real>{poses_[0], in_every_lane<Real>(symmetric_of(covariance))});
-    for (std::size_t b = 0; b < poses_.size(); ++b) {
-      const auto first = static_cast<std::uint32_t>(b * kLanesOf<Real>);
-      poses_[b] = draw_from(factor, context.identity(Draw::start_sample, first));
-    }
-  }
-
   const Weights<Real>& weights() const { return population_.weights(); }
 
   void predict_poses(const StepContext& context) {

@@ -176,12 +176,13 @@ class MapLearning {
     return {{mean[0], mean[1]}, inverted(one.covariance)};
   }
 
-  /// Updates a landmark that is observed again. `index` selects its random numbers; candidates are
-  /// placed along and across `heading` [rad], so that a rotated world is searched alike. What
-  /// evolution does is added to `report`.
+  /// Updates a landmark that is observed again, unless it is known exactly. `index` selects its
+  /// random numbers; candidates are placed along and across `heading` [rad], so that a rotated
+  /// world is searched alike. What evolution does is added to `report`.
   void learn(const StepContext& context, std::uint32_t index, double heading,
              const std::vector<BasicPose<Real>>& poses, const Weights<Real>& weights,
              const RangeBearing<double>& seen, SharedLandmark& landmark, EvolutionReport& report) {
+    if (landmark.is_exact) return;
     evidence_.look(poses, weights, seen, noise_, settings_.objective);
     prior_ = settings_.mode == MapMode::recursive ? landmark : SharedLandmark{landmark.mean, {}};
     if (settings_.mode == MapMode::onestep_threshold &&

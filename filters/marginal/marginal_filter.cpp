@@ -17,6 +17,7 @@ FilterKind marginal_kind() {
           .source = "Martinez-Cantin et al. 2007; Klaas et al. 2005; EQUATIONS 12",
           .reports = {.particles = true, .own_columns = EvolutionReport::columns()},
           .options = marginal_options(MapSolver::gauss_newton),
+          .takes_prior = true,
           .restrict_reports = keep_columns_of_evolution,
           .make = make_marginal<Lanes, Choice::by_weight>};
 }
@@ -27,6 +28,7 @@ FilterKind ampf_de_kind() {
           .source = "Havangi et al. 2013; EQUATIONS 12, 14",
           .reports = {.particles = true, .own_columns = EvolutionReport::columns()},
           .options = marginal_options(MapSolver::de),
+          .takes_prior = true,
           .restrict_reports = keep_columns_of_evolution,
           .make = make_marginal<Lanes, Choice::by_likelihood>};
 }

@@ -31,13 +31,21 @@ class MarginalFilter final : public SlamFilter {
         kernels_(poses_.size()) {}
 
   void start(const Pose& start) override {
-    std::fill(poses_.begin(), poses_.end(), BasicPose<Real>{start.x, start.y, start.heading});
+    start_from(StepContext::before_all_steps(), {.pose = {start}});
+  }
+  /// Particles are drawn from the prior of the pose. They share the known map.
+  void start_from(const StepContext& context, const Prior& prior) override {
+    now_ = context;
+    draw_start(context, prior.pose, poses_);
     population_.start();
     map_.clear();
     association_.clear();
+    for (const LandmarkEstimate& known : prior.map) {
+      association_.add(static_cast<std::int32_t>(map_.size()));
+      map_.push_back(given_landmark(known));
+    }
     motion_.restart();
     forget_scan();
-    now_ = StepContext::before_all_steps();
   }
 
   void predict(const StepContext& context, const Control& control, double duration) override {

@@ -28,13 +28,24 @@ inline Symmetric2<double> inverted(const Symmetric2<double>& A) {
 struct SharedLandmark {
   Point mean;
   Symmetric2<double> information;  ///< Lambda [1/m^2]: information about the position
+  bool is_exact = false;           ///< whether the position is known exactly, and never learned
 
   /// Returns Lambda^-1 [m^2].
-  Symmetric2<double> covariance() const { return inverted(information); }
+  Symmetric2<double> covariance() const {
+    return is_exact ? Symmetric2<double>{} : inverted(information);
+  }
 };
 
 /// All landmarks, in the order of initialisation.
 using SharedMap = std::vector<SharedLandmark>;
+
+/// A landmark that a filter is given before the first step (EQUATIONS 23).
+inline SharedLandmark given_landmark(const LandmarkEstimate& known) {
+  const Point mean{known.mean.x(), known.mean.y()};
+  const Eigen::Matrix2d& P = known.covariance;
+  if (P.isZero(0.0)) return {mean, {}, true};
+  return {mean, inverted(Symmetric2<double>{P(0, 0), P(0, 1), P(1, 1)})};
+}
 
 /// Converts to the type in which filters report landmarks.
 inline LandmarkEstimate estimate_of(const SharedLandmark& landmark) {

@@ -37,10 +37,12 @@ class MapLearning {
     return landmark;
   }
 
-  /// Moves a landmark to the minimum of EQUATIONS (14.2). `chance` selects the random numbers of
-  /// evolution; its candidates are scattered along and across `heading`.
+  /// Moves a landmark to the minimum of EQUATIONS (14.2), unless it is known exactly. `chance`
+  /// selects the random numbers of evolution; its candidates are scattered along and across
+  /// `heading`.
   void learn(const StreamIdentity& chance, double heading, const WeightedPoses& cloud,
              const Detection& z, Landmark& landmark) {
+    if (landmark.covariance.isZero(0.0)) return;
     Known known{landmark.mean, Matrix<2>::Zero()};
     if (settings_.mode == MapMode::recursive) known.information = inverse_of(landmark.covariance);
     if (settings_.mode == MapMode::onestep_threshold &&

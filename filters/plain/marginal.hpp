@@ -29,10 +29,20 @@ class Marginal final : public SlamFilter {
   }
 
   void start(const Pose& start) override {
-    const std::size_t M = setup_.options.integer("particles");
-    kernels_.assign(M, {to_vector(start), Matrix<3>::Zero(), -std::log(static_cast<double>(M))});
+    start_from(StepContext::before_all_steps(), {.pose = {start}});
+  }
+  /// Particles are drawn from the prior of the pose. They share the known map.
+  void start_from(const StepContext& context, const Prior& prior) override {
+    const Vector<3> mean = to_vector(prior.pose.mean);
+    const Matrix<3> root = root_along(mean(2), prior.pose.covariance);
+    kernels_.resize(setup_.options.integer("particles"));
+    const double log_even = -std::log(static_cast<double>(kernels_.size()));
+    for (std::uint32_t i = 0; i < kernels_.size(); ++i) {
+      kernels_[i] = {drawn_from(mean, root, context.stream(Draw::start_sample, i)),
+                     Matrix<3>::Zero(), log_even};
+    }
     forget_ancestors();
-    map_.clear();
+    map_ = known_map(prior.map);
     report_ = {};
   }
 

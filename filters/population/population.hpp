@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/core/prior.hpp"
 #include "engine/particles/resampling.hpp"
 #include "engine/particles/weights.hpp"
 #include "filters/moments/linearised.hpp"
@@ -351,5 +352,20 @@ class Population {
   ScanReport report_;
   bool is_after_scan_ = false;
 };
+
+/// {block} Places all particles at the start, or draws them from its Gaussian (EQUATIONS 23).
+template <class Real>
+void draw_start(const StepContext& context, const PoseMoments& start,
+                std::vector<BasicPose<Real>>& poses) {
+  const Pose& mean = start.mean;
+  std::ranges::fill(poses, BasicPose<Real>{mean.x, mean.y, mean.heading});
+  if (start.covariance.isZero(0.0)) return;
+  const PoseFactor<Real> factor(
+      PoseGaussian<Real>{poses.front(), in_every_lane<Real>(symmetric_of(start.covariance))});
+  for (std::size_t b = 0; b < poses.size(); ++b) {
+    const auto first = static_cast<std::uint32_t>(b * kLanesOf<Real>);
+    poses[b] = draw_from(factor, context.identity(Draw::start_sample, first));
+  }
+}
 
 }  // namespace montecarta::filters

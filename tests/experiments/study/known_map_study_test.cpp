@@ -40,7 +40,8 @@ TEST(KnownMap, HasATextThatIsTheSameStudy) {
 }
 
 TEST(KnownMap, IsRefusedWithAFilterThatCannotTakeIt) {
-  for (const char* cell : {"smoother", "ampf_de", "fej_ekf_slam", "relative_ekf_slam"}) {
+  for (const char* cell :
+       {"smoother", "robocentric_ekf_slam", "fej_ekf_slam", "relative_ekf_slam"}) {
     EXPECT_THAT(complaint(kKnownMap, {"cells.cell=" + std::string(cell)}),
                 AllOf(HasSubstr(std::string(cell) + " with belief.map = known"),
                       HasSubstr("use one of ekf_slam, riekf_slam, ukf_slam, fastslam1")));
