@@ -205,7 +205,7 @@ std::string remedy_for_no_minimum(std::size_t outliers) {
   if (outliers == 0)
     return "use more runs or a longer drive, or check the other settings of [belief]";
   return formatted(
-      "{} of the fixes {}: leave such fixes out of the reference, or give them the "
+      "{} of the fixes {}: leave wrong ones out of the reference, or give them the "
       "sigmas that they really have",
       outliers, outliers == 1 ? "is a gross outlier" : "are gross outliers");
 }
