@@ -200,16 +200,41 @@ std::string factors_text(const LatticePoint& point) {
                    readable(factor_at(point.sensor)));
 }
 
-void refuse_no_minimum(const CellSpec& cell, const LatticePoint& least, const Axes& is_free) {
+/// What helps if a score has no minimum.
+std::string remedy_for_no_minimum(std::size_t outliers) {
+  if (outliers == 0)
+    return "use more runs or a longer drive, or check the other settings of [belief]";
+  return formatted(
+      "{} of the fixes {}: leave wrong ones out of the reference, or give them the "
+      "sigmas that they really have",
+      outliers, outliers == 1 ? "is a gross outlier" : "are gross outliers");
+}
+
+[[noreturn]] void refuse_no_minimum(const CellSpec& cell, const LatticePoint& least,
+                                    const Axes& is_free, std::size_t outliers) {
   const bool is_at_end = std::max(std::abs(least.motion), std::abs(least.sensor)) == kFarthest;
   const std::string why = is_at_end ? "it falls as far as factors of 64"
                           : is_free[0] && is_free[1]
                               ? "no surface fits it, or the filter fails near by"
                               : "the filter fails near by";
-  throw StudyError(
-      "{}: cell {}: its score has no minimum near {} ({}): use more runs or a longer drive, or "
-      "check the other settings of [belief]",
-      cell.place, cell.label, factors_text(least), why);
+  throw StudyError("{}: cell {}: its score has no minimum near {} ({}): {}", cell.place, cell.label,
+                   factors_text(least), why, remedy_for_no_minimum(outliers));
+}
+
+/// Widens the intervals for `effective` independent samples, if they are fewer than the parts: the
+/// errors then last longer than a part (STATISTICS 23). If no error could be judged, it counts as
+/// one.
+void take_memory(double effective, TuningResult& result) {
+  const auto parts = static_cast<double>(result.parts);
+  result.effective = effective;
+  if (effective >= parts) return;
+  effective = std::max(effective, 1.0);
+  const double apart = std::sqrt(parts / effective);
+  const double reach = apart * t_of_samples(effective) / t_of_samples(parts);
+  widen(apart, reach, result.noise);
+  for (TunedByInterval& one : result.by_interval) {
+    if (one.noise) widen(apart, reach, *one.noise);
+  }
 }
 
 /// Widens the intervals for `effective` independent samples, if they are fewer than the parts: the
@@ -244,7 +269,7 @@ TuningResult find_noise(const Study& study, const CellSpec& cell, TuningScore sc
   const LatticePoint octave = search.descend({}, kGridSides, kOctave);
   const LatticePoint least = search.descend(search.descend(octave, 1, 4), 1, 2);
   const auto noise = search.fitted_near(least);
-  if (!noise) refuse_no_minimum(cell, least, is_free);
+  if (!noise) refuse_no_minimum(cell, least, is_free, landscape.outliers());
   TuningResult result{.cell = cell.label,
                       .score = score,
                       .runs = landscape.runs(),

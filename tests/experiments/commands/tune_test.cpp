@@ -241,13 +241,18 @@ TEST_F(Tune, TakesADriveByItsErrorsAgainstAReference) {
 
 TEST_F(Tune, NamesGrossOutliersOfTheReferenceFirst) {
   record_drive();
-  give_reference();
   const std::string name = "drives/runs/run_0000/reference.csv";
-  std::string fixes = text_of(name);
-  const std::size_t row = fixes.find('\n', fixes.size() / 4);
-  const std::size_t x = fixes.find(',', row) + 1;
-  write(name, fixes.replace(x, fixes.find(',', x) - x, "400"));
-  EXPECT_THAT(call({"tune", "log.ini"}).out, testing::StartsWith("1 of the "));
+  const auto tune_with_fix_off_by = [&](double distance) {
+    give_reference();
+    std::string fixes = text_of(name);
+    const std::size_t row = fixes.find('\n', fixes.size() / 4);
+    const std::size_t x = fixes.find(',', row) + 1, end = fixes.find(',', x);
+    const double wild = std::stod(fixes.substr(x, end - x)) + distance;
+    write(name, fixes.replace(x, end - x, std::to_string(wild)));
+    return call({"tune", "log.ini"});
+  };
+  EXPECT_THAT(tune_with_fix_off_by(2.0).out, testing::StartsWith("1 of the "));
+  EXPECT_THAT(tune_with_fix_off_by(400.0).err, HasSubstr("1 of the fixes is a gross outlier"));
 }
 
 TEST_F(Tune, TakesAReferenceWithoutErrorsForExactOnlyIfItIsAskedTo) {

@@ -25,7 +25,7 @@ TEST(NoiseLandscape, ScoresTheScansThatAreJudged) {
                all.add(score);
                if (itinerary.step_time[step] >= 20.0) late.add(score);
              });
-  NoiseLandscape landscape(study, study.cells[0], Parallel::serial());
+  NoiseLandscape landscape(study, study.cells[0], TuningScore::truth, Parallel::serial());
   landscape.compute(std::array{LatticePoint{}}, 1);
   EXPECT_EQ(landscape.mean({}, 1, {0}), late.mean());
   EXPECT_NE(late.mean(), all.mean());
