@@ -61,10 +61,10 @@ MapCriteria map_criteria_of(const ResultFile& file) {
   return criteria;
 }
 
-DriveCriteria criteria_of_drive(const RunDrive& drive) {
+DriveCriteria criteria_of_drive(const RunDrive& drive, const Eigen::Matrix3d& start_covariance) {
   DriveCriteria criteria{drive.scan_times, drive.scan_rows, {}};
   for (const ReferencePath& path : drive.references) {
-    criteria.references.emplace_back(path, drive.row_times, drive.start);
+    criteria.references.emplace_back(path, drive.row_times, drive.start, start_covariance);
   }
   return criteria;
 }
@@ -102,11 +102,12 @@ RunCriteria criteria_of(const ResultFile& file, double level, double within) {
     }
     criteria.share_of_runs = 1.0;  // a file of imported estimates is no shard
   }
+  const Eigen::Matrix3d start = believed_prior_of(file).start_covariance();
   for (const ReferencePath& path : file.references()) {
-    criteria.references.emplace_back(path, file.times(), file.description().start);
+    criteria.references.emplace_back(path, file.times(), file.description().start, start);
   }
   for (std::size_t run = 0; run < file.description().drives.size(); ++run) {
-    criteria.drives.push_back(criteria_of_drive(drive_of_run(file, run)));
+    criteria.drives.push_back(criteria_of_drive(drive_of_run(file, run), start));
   }
   if (!criteria.drives.empty()) criteria.references = criteria.drives.front().references;
   criteria.beacons = file.landmarks();

@@ -84,11 +84,12 @@ RowBeliefs beliefs_of(const RunRows& rows, std::size_t particles,
   return all;
 }
 
-/// Interpolates the belief at a place; the pose at the start is known exactly.
-RowBelief belief_between(const std::vector<RowBelief>& rows, const PathAtFixes::FixPlace& place) {
+/// Interpolates the belief at a place; at the start it is the one that filters are given.
+RowBelief belief_between(const std::vector<RowBelief>& rows, const Eigen::Matrix3d& at_start,
+                         const PathAtFixes::FixPlace& place) {
   const RowBelief& after = rows[place.next];
   const RowBelief before =
-      place.next == 0 ? RowBelief{.inverse_freedom = after.inverse_freedom} : rows[place.next - 1];
+      place.next == 0 ? RowBelief{at_start, after.inverse_freedom} : rows[place.next - 1];
   return {(1.0 - place.share) * before.covariance + place.share * after.covariance,
           std::lerp(before.inverse_freedom, after.inverse_freedom, place.share),
           before.is_known && after.is_known};
@@ -160,7 +161,8 @@ FixErrors errors_at_fixes(const PathAtFixes& fixes, std::span<const std::uint32_
     const double heading = fixes.headings().empty() ? poses[f].heading : fixes.headings()[f];
     const Eigen::Vector2d& position = fixes.positions()[f];
     const Eigen::Vector3d error = boxminus(poses[f], {position.x(), position.y(), heading});
-    const RowBelief belief = belief_between(path.beliefs, fixes.places()[f]);
+    const RowBelief belief =
+        belief_between(path.beliefs, fixes.start_covariance(), fixes.places()[f]);
     const Eigen::MatrixXd of_fix = fixes.covariances()[f].block(first, first, d, d);
     const auto whitened = in_units_of(error.segment(first, d), belief,
                                       belief.covariance.block(first, first, d, d), of_fix);

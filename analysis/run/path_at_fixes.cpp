@@ -30,8 +30,10 @@ bool is_estimated(double time, std::span<const double> times, std::size_t next) 
 }  // namespace
 
 PathAtFixes::PathAtFixes(const ReferencePath& reference, std::span<const double> times,
-                         const Pose& start)
-    : start_(start), has_errors_(!reference.covariance.empty()) {
+                         const Pose& start, const Eigen::Matrix3d& start_covariance)
+    : start_(start),
+      start_covariance_(start_covariance),
+      has_errors_(!reference.covariance.empty()) {
   used_.name = reference.name;
   for (std::size_t f = 0; f < reference.time.size(); ++f) {
     const double time = reference.time[f];

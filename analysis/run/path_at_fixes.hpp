@@ -27,9 +27,11 @@ inline constexpr double kTimeAtPose = 1e-3;
 /// the same for all runs of all cells; any number of threads may use it.
 class PathAtFixes {
  public:
-  /// Takes the `times` [s] of a path's rows, increasing; the vehicle stands at `start` at time 0.
-  /// Fixes before time 0 or after the last row are not used.
-  PathAtFixes(const ReferencePath& reference, std::span<const double> times, const Pose& start);
+  /// Takes the `times` [s] of a path's rows, increasing; the vehicle stands at `start` at time 0,
+  /// with the covariance (m, m, rad)^2 that filters are given. Fixes before time 0 or after the
+  /// last row are not used.
+  PathAtFixes(const ReferencePath& reference, std::span<const double> times, const Pose& start,
+              const Eigen::Matrix3d& start_covariance = Eigen::Matrix3d::Zero());
 
   const std::string& name() const { return used_.name; }
   /// Number of fixes within the drive that are not used, because they lie in a longer gap.
@@ -43,6 +45,8 @@ class PathAtFixes {
   /// [rad] {fix used} heading; empty where the reference has none.
   const std::vector<double>& headings() const { return used_.heading; }
 
+  /// Covariance of the start that filters are given, (m, m, rad)^2; zero if it is exact.
+  const Eigen::Matrix3d& start_covariance() const { return start_covariance_; }
   /// {fix used} covariance, (m, m, rad)^2; empty if unknown.
   const std::vector<Eigen::Matrix3d>& covariances() const { return used_.covariance; }
 
@@ -65,6 +69,7 @@ class PathAtFixes {
   static FixPlace place_of(double time, std::span<const double> times);
 
   Pose start_;
+  Eigen::Matrix3d start_covariance_;
   ReferencePath used_;
   std::size_t in_gaps_ = 0;
   bool has_errors_;

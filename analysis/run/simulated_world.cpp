@@ -66,10 +66,10 @@ Eigen::Vector2d sigma_of(Facts& facts, const Sensor& sensor) {
   return sigma;
 }
 
-/// The prior of a known map. Files omit deviations of 0.
-PriorDeviations prior_of(const Facts& facts) {
+/// The deviations whose names begin with `section`. Files omit deviations of 0.
+PriorDeviations prior_of(const Facts& facts, const std::string& section) {
   const auto usual = [&](const char* key) {
-    return in_si(key, facts.optional_number(key).value_or(0.0));
+    return in_si(key, facts.optional_number(section + key).value_or(0.0));
   };
   return {.position = usual("start_sigma_m"),
           .heading = usual("start_sigma_deg"),
@@ -80,6 +80,10 @@ PriorDeviations prior_of(const Facts& facts) {
 
 bool map_is_known(const ResultFile& file) {
   return Facts(file.scenario()).optional_text("belief.map") == "known";
+}
+
+PriorDeviations believed_prior_of(const ResultFile& file) {
+  return map_is_known(file) ? prior_of(Facts(file.scenario()), "belief.") : PriorDeviations();
 }
 
 std::optional<SimulatedWorld> simulated_world_of(const ResultFile& file) {
@@ -103,7 +107,7 @@ std::optional<SimulatedWorld> simulated_world_of(const ResultFile& file) {
                           sensor->mounting, facts.optional_number("min_range").value_or(0.0)),
       .same_path = facts.text("noise") != "matched",
       .sensor = *sensor};
-  if (map_is_known(file)) world.prior = prior_of(facts);
+  if (map_is_known(file)) world.prior = prior_of(facts, "");
   if (facts.optional_text("fixes") == "position") {
     const double scans = std::round(facts.number("scan_rate") / facts.number("fix_rate"));
     if (!(scans >= 1.0) || scans > 1e9) return std::nullopt;

@@ -37,6 +37,9 @@ struct SimulatedWorld {
 /// Returns whether the filters of a study are given the map.
 bool map_is_known(const ResultFile& file);
 
+/// What filters of the file assume of their start and of a known map; exact if no map is known.
+PriorDeviations believed_prior_of(const ResultFile& file);
+
 /// The simulated world, read from the attributes of /scenario; nullopt if the file is not of a
 /// simulation or lacks an attribute.
 std::optional<SimulatedWorld> simulated_world_of(const ResultFile& file);

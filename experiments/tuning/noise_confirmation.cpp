@@ -103,7 +103,7 @@ struct SecondFixes : ScoredHalf {
 SecondFixes second_fixes(const StudyPlan& plan, std::uint64_t run, const Drive& drive,
                          const Cell& cell) {
   const Itinerary& itinerary = plan.drives->itinerary_of(run);
-  const ReferenceHalf half(itinerary, DriveHalf::second);
+  const ReferenceHalf half(itinerary, drive, DriveHalf::second);
   SecondFixes found;
   const auto estimates = half.estimates_on({plan, run, drive, half.scans()}, *cell.make_filter());
   found.is_whole = estimates.has_value();

@@ -78,8 +78,10 @@ void NoiseLandscape::find_intervals(const Study& study) {
 
 void NoiseLandscape::take_references() {
   for (std::uint64_t run = 0; run < runs_; ++run) {
+    Drive drive;
+    plan_.drives->generate(run, drive);
     const ReferenceHalf& half =
-        references_.emplace_back(plan_.drives->itinerary_of(run), DriveHalf::first);
+        references_.emplace_back(plan_.drives->itinerary_of(run), drive, DriveHalf::first);
     const std::string place = formatted("{}: drive {}", cell_.place, run + 1);
     const std::size_t n = half.fixes().times().size();
     if (n < kFewestFixes * parts_of_run_) {

@@ -84,15 +84,16 @@ const ReferencePath* reference_to_tune_by(const Itinerary& itinerary) {
   return found == all.end() ? &all.front() : &*found;
 }
 
-ReferenceHalf::ReferenceHalf(const Itinerary& itinerary, DriveHalf half)
-    : ReferenceHalf(itinerary, half,
+ReferenceHalf::ReferenceHalf(const Itinerary& itinerary, const Drive& drive, DriveHalf half)
+    : ReferenceHalf(itinerary, drive, half,
                     half == DriveHalf::first ? half_of(itinerary.scans()) : itinerary.scans()) {}
 
-ReferenceHalf::ReferenceHalf(const Itinerary& itinerary, DriveHalf half, std::size_t scans)
+ReferenceHalf::ReferenceHalf(const Itinerary& itinerary, const Drive& drive, DriveHalf half,
+                             std::size_t scans)
     : scans_(scans),
       steps_(steps_until(itinerary, scans)),
       fixes_(fixes_in(itinerary, half), std::span(itinerary.step_time).first(steps_),
-             itinerary.start),
+             itinerary.start, drive.prior.value_or(Prior()).pose.covariance),
       is_needed_(steps_) {
   for (const PathAtFixes::FixPlace& place : fixes_.places()) {
     is_needed_[place.next] = true;

@@ -24,8 +24,8 @@ const ReferencePath* reference_to_tune_by(const Itinerary& itinerary);
 /// estimates after every step, as analyze judges them with record.rate = control.
 class ReferenceHalf {
  public:
-  /// The itinerary must have a reference.
-  ReferenceHalf(const Itinerary& itinerary, DriveHalf half);
+  /// The itinerary must have a reference. The drive has the prior of the start, if there is one.
+  ReferenceHalf(const Itinerary& itinerary, const Drive& drive, DriveHalf half);
 
   const PathAtFixes& fixes() const { return fixes_; }
   /// Number of scans after which no estimate is needed.
@@ -41,7 +41,7 @@ class ReferenceHalf {
                            std::size_t particles) const;
 
  private:
-  ReferenceHalf(const Itinerary& itinerary, DriveHalf half, std::size_t scans);
+  ReferenceHalf(const Itinerary& itinerary, const Drive& drive, DriveHalf half, std::size_t scans);
 
   std::size_t scans_;
   std::size_t steps_;

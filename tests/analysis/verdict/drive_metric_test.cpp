@@ -332,6 +332,15 @@ TEST(FixErrors, LeaveOutAndCountWhatCannotBeJudged) {
   EXPECT_EQ(errors_of(fix_at(0.5, {1, 1, 1}, {1, 1, 1}), rows, ErrorBlock::pose).nees.size(), 1U);
 }
 
+TEST(FixErrors, BeginAtTheCovarianceThatFiltersAreGiven) {
+  const ReferencePath path = fix_at(0.0, {2.0, 0.0, 0.0}, {1e-20, 1e-20, 1e-20});
+  const PathAtFixes fixes(path, kScanTimes, {}, 4.0 * Eigen::Matrix3d::Identity());
+  RunRows rows = rows_with({1.0, 1.0, 1.0});
+  rows.path.spread = rows.spread;
+  EXPECT_THAT(errors_at_fixes(fixes, {}, rows, 0, ErrorBlock::position).nees,
+              ElementsAre(DoubleNear(1.0, 1e-12)));
+}
+
 TEST(FixErrors, AreNoneWithoutCovarianceOrHeading) {
   ReferencePath path = fix_at(1.5, {1, 1, 1}, {1, 1, 1});
   RunRows rows = rows_with({1.0, 1.0, 1.0});
