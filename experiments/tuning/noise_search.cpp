@@ -237,22 +237,6 @@ void take_memory(double effective, TuningResult& result) {
   }
 }
 
-/// Widens the intervals for `effective` independent samples, if they are fewer than the parts: the
-/// errors then last longer than a part (STATISTICS 23). If no error could be judged, it counts as
-/// one.
-void take_memory(double effective, TuningResult& result) {
-  const auto parts = static_cast<double>(result.parts);
-  result.effective = effective;
-  if (effective >= parts) return;
-  effective = std::max(effective, 1.0);
-  const double apart = std::sqrt(parts / effective);
-  const double reach = apart * t_of_samples(effective) / t_of_samples(parts);
-  widen(apart, reach, result.noise);
-  for (TunedByInterval& one : result.by_interval) {
-    if (one.noise) widen(apart, reach, *one.noise);
-  }
-}
-
 }  // namespace
 
 TuningResult find_noise(const Study& study, const CellSpec& cell, TuningScore score,
