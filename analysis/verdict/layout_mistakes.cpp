@@ -114,8 +114,8 @@ std::optional<LayoutMistake> LayoutMistakes::far_nearer() const {
     const double distance = std::abs(std::log(ratio));
     return distance > std::log(kNear) && distance > std::abs(std::log(stated));
   };
-  constexpr double kFactor = 10.0;
-  double least = stated().distance() - std::log(kFactor);
+  constexpr double kFactor = 10.0;  // nearer by it, and not farther than it
+  double least = std::min(stated().distance() - std::log(kFactor), std::log(kFactor));
   std::optional<LayoutMistake> nearest;
   for (std::size_t k = 0; k < kLayoutMistakes; ++k) {
     const auto mistake = static_cast<LayoutMistake>(k);

@@ -52,7 +52,7 @@ class LayoutMistakes {
     return ratios(1 + static_cast<std::size_t>(mistake));
   }
   /// The mistake without which ratios are nearest to 1, if the farther one is nearer by a factor of
-  /// ten or more, and none is farther than as stated (or than 3).
+  /// ten or more and within ten, and none is farther than as stated (or than 3).
   std::optional<LayoutMistake> far_nearer() const;
   static constexpr auto parts() { return std::tuple(added(&LayoutMistakes::sums_)); }
 
