@@ -178,10 +178,10 @@ double ArchiveEntry::position_rmse() const {
   double sum = 0.0, n = 0.0;
   for (const double rmse : scores[kArchivedPositionRmse]) {
     if (std::isnan(rmse)) continue;
-    sum += rmse * rmse;
+    sum += rmse;
     n += 1.0;
   }
-  return std::sqrt(sum / n);
+  return sum / n;
 }
 
 std::uint64_t block_fingerprint(std::span<const std::uint64_t> of_runs) {

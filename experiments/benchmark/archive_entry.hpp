@@ -58,7 +58,7 @@ struct ArchiveEntry {
   std::vector<std::uint64_t> blocks = {};  ///< {block} fingerprint of its runs
   ArchivedScores scores = {};
 
-  /// Root of the mean of the squared position errors over the complete runs [m].
+  /// Mean over the complete runs of the RMSE of the position [m].
   double position_rmse() const;
 };
 

@@ -11,7 +11,7 @@ namespace montecarta::experiments {
 namespace {
 
 /// Largest share of a variance that the anchor's error may have where it does not count.
-constexpr double kMostShare = 1e-3;
+constexpr double kSmallShare = 1e-3;
 /// Largest share of the estimates that may be left out soon after their anchors.
 constexpr double kMostLeftOut = 0.1;
 
@@ -19,7 +19,7 @@ constexpr double kMostLeftOut = 0.1;
 bool is_small(const Eigen::MatrixXd& part, const Eigen::MatrixXd& covariance) {
   constexpr double kLeastVariance = 1e-12;  // [m^2, rad^2]
   for (Eigen::Index i = 0; i < part.rows(); ++i) {
-    if (part(i, i) > kLeastVariance && part(i, i) > kMostShare * covariance(i, i)) return false;
+    if (part(i, i) > kLeastVariance && part(i, i) > kSmallShare * covariance(i, i)) return false;
   }
   return true;
 }
