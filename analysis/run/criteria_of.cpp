@@ -69,6 +69,19 @@ DriveCriteria criteria_of_drive(const RunDrive& drive, const Eigen::Matrix3d& st
   return criteria;
 }
 
+/// Adds how the errors of imported estimates are judged.
+void add_imported(const ResultFile& file, const ImportedState& imported, RunCriteria& criteria) {
+  criteria.components = imported.components;
+  criteria.units = imported.units;
+  criteria.by_upper_bounds = imported.has_bounds();
+  criteria.has_own_scans = imported.state == kInnovationsAlone || !imported.windows.empty();
+  if (imported.state == kInnovationsAlone) {
+    criteria.innovation_components = imported.components.size();
+    criteria.tests_together = 2 * sensors_of(file);
+  }
+  criteria.share_of_runs = 1.0;  // a file of imported estimates is no shard
+}
+
 }  // namespace
 
 RunCriteria criteria_of(const ResultFile& file, double level, double within) {
@@ -91,17 +104,7 @@ RunCriteria criteria_of(const ResultFile& file, double level, double within) {
       file.cells().empty() ? ImportedState() : imported_state(file.cells().front());
   criteria.has_same_measurements =
       !file.has_errors() && !imported.is_imported() && file.description().drives.empty();
-  if (imported.is_imported()) {
-    criteria.components = imported.components;
-    criteria.units = imported.units;
-    criteria.by_upper_bounds = imported.has_bounds();
-    criteria.has_own_scans = imported.state == kInnovationsAlone || !imported.windows.empty();
-    if (imported.state == kInnovationsAlone) {
-      criteria.innovation_components = imported.components.size();
-      criteria.tests_together = 2 * sensors_of(file);
-    }
-    criteria.share_of_runs = 1.0;  // a file of imported estimates is no shard
-  }
+  if (imported.is_imported()) add_imported(file, imported, criteria);
   const Eigen::Matrix3d start = believed_prior_of(file).start_covariance();
   for (const ReferencePath& path : file.references()) {
     criteria.references.emplace_back(path, file.times(), file.description().start, start);

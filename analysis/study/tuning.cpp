@@ -110,6 +110,11 @@ std::string score_note(const TuningResult& result) {
                    : prose("tuning", "reference without errors", reference);
 }
 
+/// Returns whether the reference has too few fixes in the second half to confirm anything.
+bool is_unconfirmed(const TuningResult& result, const TuningConfirmation& confirmation) {
+  return result.score == TuningScore::reference && confirmation.answer == Answer::untested;
+}
+
 /// Says how few independent errors the fixes are worth.
 std::string memory_note(const TuningResult& result, const TuningConfirmation& confirmation) {
   return prose("tuning", "memory",
@@ -171,12 +176,19 @@ std::string tuning_sentence(const TuningResult& result, const TuningConfirmation
   const bool is_open =
       confirmation.answer == Answer::undecided || confirmation.answer == Answer::untested;
   if (result.score == TuningScore::reference) {
+    const std::string reference =
+        result.reference +
+        (result.reference_has_errors ? "" : ", which states no errors of its own,");
+    if (is_unconfirmed(result, confirmation)) {
+      return formatted("{} {}", found,
+                       prose("tuning", "unconfirmed by reference", {{"reference", reference}}));
+    }
     const char* const key = confirmation.answer == Answer::consistent ? "consistent by reference"
                             : is_open                                 ? "undecided by reference"
                                       : "not consistent by reference";
     return formatted(
         "{} {}", found,
-        prose("tuning", key, {{"reference", result.reference}, {"verdict", confirmation.verdict}}));
+        prose("tuning", key, {{"reference", reference}, {"verdict", confirmation.verdict}}));
   }
   const char* const key = confirmation.answer == Answer::consistent ? "consistent"
                           : is_open                                 ? "undecided"
@@ -193,9 +205,10 @@ std::vector<std::string> tuning_notes(const TuningResult& result,
   const TunedNoise& noise = result.noise;
   std::vector<std::string> notes;
   if (auto score = score_note(result); !score.empty()) notes.push_back(std::move(score));
-  notes.push_back(gain_note(result, confirmation));
+  const bool is_confirmed = !is_unconfirmed(result, confirmation);
+  if (is_confirmed) notes.push_back(gain_note(result, confirmation));
   if (result.score == TuningScore::reference) {
-    notes.push_back(memory_note(result, confirmation));
+    if (is_confirmed) notes.push_back(memory_note(result, confirmation));
     if (result.effective < static_cast<double>(result.parts))
       notes.push_back(prose("tuning", "long memory"));
   }

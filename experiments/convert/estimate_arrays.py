@@ -114,8 +114,9 @@ def runs_in(path, options):
                                   "save it as {run, scan, d, d}")
         check_shape(arrays, "covariance", covariance.shape, (runs, scans, d, d))
         if options.order and d == width:
-            raise ConversionError(f"{path}: --order {options.order} (the state is no pose in "
-                                  f"space, but {','.join(names)}): leave it out")
+            raise ConversionError(f"{path}: --order {options.order} (the order of the covariance "
+                                  f"must be that of {','.join(names)} here; only a 'mean' of poses "
+                                  "in space may have another): leave it out")
         return [(k, run_of(k, values[k], in_order(covariance[k], options))) for k in range(runs)]
     if mean is None:
         raise ConversionError(f"{path}: 'error' needs no truth (an error is a difference from it): "

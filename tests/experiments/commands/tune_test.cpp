@@ -239,6 +239,18 @@ TEST_F(Tune, TakesADriveByItsErrorsAgainstAReference) {
               HasSubstr("innovations of the second half"));
 }
 
+TEST_F(Tune, SaysThatNothingConfirmsItWithoutFixesInTheSecondHalf) {
+  record_drive();
+  give_reference();
+  const std::string name = "drives/runs/run_0000/reference.csv";
+  const std::string fixes = text_of(name);
+  write(name, fixes.substr(0, fixes.find('\n', fixes.size() * 9 / 20) + 1));
+  const Called called = call({"tune", "log.ini"});
+  EXPECT_EQ(called.code, 0) << called.err;
+  EXPECT_THAT(called.out, HasSubstr("reference has too few fixes in the second half"));
+  EXPECT_THAT(called.out, testing::Not(HasSubstr("plus -")));
+}
+
 TEST_F(Tune, NamesGrossOutliersOfTheReferenceFirst) {
   record_drive();
   const std::string name = "drives/runs/run_0000/reference.csv";
@@ -259,7 +271,9 @@ TEST_F(Tune, TakesAReferenceWithoutErrorsForExactOnlyIfItIsAskedTo) {
   record_drive();
   give_reference(1.0, false);
   EXPECT_THAT(call({"tune", "log.ini"}).out, HasSubstr("because it states no errors"));
-  EXPECT_THAT(call({"tune", "log.ini", "--by", "reference"}).out, HasSubstr("counts as exact"));
+  EXPECT_THAT(
+      call({"tune", "log.ini", "--by", "reference"}).out,
+      testing::AllOf(HasSubstr("counts as exact"), HasSubstr("states no errors of its own")));
 }
 
 TEST_F(Tune, RefusesAReferenceThatNoNoiseExplains) {

@@ -369,7 +369,7 @@ class Arrays(Estimates):
         line, = self.run_arrays("a.npz", "estimate", covariance=moved[None, None],
                                 order="rotation-first", **pose)["run_0/estimate.csv"][1:]
         np.testing.assert_allclose([float(one) for one in line.split(",")[8:]], WHOLE.ravel())
-        with self.assertRaisesRegex(ConversionError, "no pose in space"):
+        with self.assertRaisesRegex(ConversionError, "only a 'mean' of poses in space"):
             self.run_arrays("a.npz", "estimate", order="rotation-first", **self.arrays)
 
     def test_may_have_names_in_one_text(self):
