@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/judging/anchored_runs.hpp"
 
+#include "analysis/statistics/symmetric_eigen.hpp"
 #include "engine/formatted.hpp"
 #include "engine/text/number_text.hpp"
 #include "experiments/judging/difference_bound.hpp"
@@ -15,13 +16,31 @@ constexpr double kSmallShare = 1e-3;
 /// Largest share of the estimates that may be left out soon after their anchors.
 constexpr double kMostLeftOut = 0.1;
 
-/// Whether the part of the anchor's error is small in each component of an estimate.
-bool is_small(const Eigen::MatrixXd& part, const Eigen::MatrixXd& covariance) {
+/// Whether the part of the anchor's error is small in each direction of an estimate's error: the
+/// largest eigenvalue of L^-1 B L^-T with P = L L', in the range of P.
+bool is_small(Eigen::MatrixXd part, const Eigen::MatrixXd& covariance) {
   constexpr double kLeastVariance = 1e-12;  // [m^2, rad^2]
+  constexpr double kLeastEigenvalue = 1e-12;
+  std::vector<Eigen::Index> open;
   for (Eigen::Index i = 0; i < part.rows(); ++i) {
-    if (part(i, i) > kLeastVariance && part(i, i) > kSmallShare * covariance(i, i)) return false;
+    if (part(i, i) <= kLeastVariance) {
+      part.row(i).setZero();
+      part.col(i).setZero();
+    }
+    if (part(i, i) > kSmallShare * covariance(i, i)) return false;
+    if (covariance(i, i) > 0.0) open.push_back(i);
   }
-  return true;
+  if (part.isZero(0.0)) return true;
+  const Eigen::MatrixXd P = covariance(open, open);
+  const Eigen::VectorXd scale = P.diagonal().cwiseSqrt().cwiseInverse();
+  const analysis::SymmetricEigen axes =
+      analysis::symmetric_eigen(scale.asDiagonal() * P * scale.asDiagonal());
+  const Eigen::VectorXd per_deviation = axes.values.unaryExpr(
+      [](double v) { return v > kLeastEigenvalue ? 1.0 / std::sqrt(v) : 0.0; });
+  const Eigen::MatrixXd whitening =
+      per_deviation.asDiagonal() * axes.vectors.transpose() * scale.asDiagonal();
+  const Eigen::MatrixXd whitened = whitening * part(open, open) * whitening.transpose();
+  return analysis::symmetric_eigenvalues(whitened).maxCoeff() <= kSmallShare;
 }
 
 }  // namespace
@@ -81,8 +100,8 @@ std::vector<std::string> AnchoredRuns::notes() const {
   }
   if (removed_ == 0) return {};
   return {formatted(
-      "{} {} left out soon after the anchor, where its variances are more than a thousandth of "
-      "theirs",
+      "{} {} left out soon after the anchor, where its covariance is more than a thousandth of "
+      "theirs in a direction",
       removed_, removed_ == 1 ? "estimate is" : "estimates are")};
 }
 

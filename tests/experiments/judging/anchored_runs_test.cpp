@@ -34,6 +34,9 @@ struct ErrorLaw {
   double walk = 0.0;        ///< those of a step of a random walk
   double remembers = -1.0;  ///< share of an error that lasts to the next; below 0: a random walk
   double growth = 0.0;      ///< of the variance per step, if errors are no random walk
+  /// Of y and heading of errors that are no random walk, after a start with the deviations
+  /// `start`: only a narrow direction of their covariance is as small as that of the start.
+  double correlation = 0.0;
 };
 const Vector3d kDeviations(0.05, 0.04, 0.004);
 const std::vector<ErrorLaw> kLaws = {
@@ -43,7 +46,8 @@ const std::vector<ErrorLaw> kLaws = {
     {.name = "uncertain start that persists", .walk = 0.001},
     {.name = "errors forget within 2 estimates", .remembers = 0.5},
     {.name = "errors forget within 40 estimates", .remembers = 0.975},
-    {.name = "errors forget, variances grow", .remembers = 0.9, .growth = 0.05}};
+    {.name = "errors forget, variances grow", .remembers = 0.9, .growth = 0.05},
+    {.name = "errors forget, correlated", .start = 0.02, .remembers = 0.0, .correlation = 0.9999}};
 
 Vector3d true_pose(std::size_t k) {
   const double angle = 0.1 * static_cast<double>(k);
@@ -108,6 +112,14 @@ class DrawnRuns final : public EstimateSource {
         P += carried(k) * of_start * carried(k).transpose();
         error += law_.walk * normal();
       } else {
+        if (k == 0 && law_.correlation > 0.0) {
+          P *= law_.start * law_.start;
+        } else {
+          P(1, 2) = P(2, 1) = law_.correlation * kDeviations(1) * kDeviations(2);
+          const double independent = std::sqrt(1.0 - law_.correlation * law_.correlation);
+          at_k(2) = kDeviations(2) * (law_.correlation * at_k(1) / kDeviations(1) +
+                                      independent * at_k(2) / kDeviations(2));
+        }
         P *= 1.0 + law_.growth * steps;
         at_k *= std::sqrt(1.0 + law_.growth * steps);
         error =
