@@ -94,7 +94,6 @@ RunCriteria criteria_of(const ResultFile& file, double level, double within) {
   if (imported.is_imported()) {
     criteria.components = imported.components;
     criteria.units = imported.units;
-    criteria.by_upper_bounds = imported.has_bounds();
     criteria.has_own_scans = imported.state == kInnovationsAlone || !imported.windows.empty();
     if (imported.state == kInnovationsAlone) {
       criteria.innovation_components = imported.components.size();
