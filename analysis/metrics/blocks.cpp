@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Estimates of another program: verdicts on position, rotation and velocity by themselves.
+#include "analysis/run/imported_state.hpp"
 #include "analysis/run/measured_run.hpp"
 #include "analysis/study/cell_report.hpp"
 #include "analysis/study/frame.hpp"
@@ -32,8 +33,8 @@ class BlocksOverRuns final : public MergedSums<BlocksOverRuns> {
     std::vector<BlockVerdict> found =
         sums_->result(blocks_, {criteria_->components, criteria_->times}, criteria_->level,
                       criteria_->within, cell.complete);
-    for (BlockVerdict& block : found) {
-      if (criteria_->by_upper_bounds) take_for_upper_bounds(block.verdict);
+    if (has_bounds(cell.settings)) {
+      for (BlockVerdict& block : found) take_for_upper_bounds(block.verdict);
     }
     cell.findings.put(std::move(found));
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // NEES of the pose and its parts, over time and over runs.
+#include "analysis/run/imported_state.hpp"
 #include "analysis/run/measured_run.hpp"
 #include "analysis/statistics/nees_bounds.hpp"
 #include "analysis/study/cell_report.hpp"
@@ -7,6 +8,7 @@
 #include "analysis/study/strips.hpp"
 #include "analysis/study/verdict_table.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <set>
 #include <string>
@@ -100,6 +102,12 @@ std::string label_of(const StudyAnalysis& study, ErrorBlock block) {
          (block == ErrorBlock::pose ? study.imported.name_of_whole() : name_of(block));
 }
 
+/// Whether the ratios of a cell are only bounds.
+bool has_bounded_cells(const StudyAnalysis& study) {
+  return std::ranges::any_of(study.cells,
+                             [](const CellAnalysis& cell) { return has_bounds(cell.settings); });
+}
+
 Panel nees_panel(const StudyAnalysis& study, ErrorBlock block) {
   Panel panel{"nees_ratio_" + name_of(block), label_of(study, block), {}, {}, Scale::automatic};
   std::size_t dimension = 0;
@@ -109,7 +117,7 @@ Panel nees_panel(const StudyAnalysis& study, ErrorBlock block) {
     dimension = nees->series.dimension;
     return scaled(nees->series.average, 1.0 / static_cast<double>(dimension));
   });
-  const bool is_bound = study.imported.has_bounds();  // of which no law is known
+  const bool is_bound = has_bounded_cells(study);  // of which no law is known
   if (!panel.curves.empty() && !is_bound) panel.bands = bands(study, dimension);
   return panel;
 }
@@ -163,7 +171,7 @@ Figure anees_figure(const StudyAnalysis& study) {
   const bool is_of_innovations = study.imported.state == kInnovationsAlone;
   curve.emplace_back("nees", is_of_innovations ? "NIS" : "NEES");
   curve.emplace_back("level", level_text(study.level));
-  const bool is_bound = study.imported.has_bounds();
+  const bool is_bound = has_bounded_cells(study);
   return nees_figure(study, {ErrorBlock::pose}, prose("consistency", "strips of whole", whole),
                      is_bound ? prose("consistency", "curves of bound", whole)
                               : prose("consistency", "curves of whole", curve),

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The verdict on the whole error of every cell.
+#include "analysis/run/imported_state.hpp"
 #include "analysis/run/measured_run.hpp"
 #include "analysis/study/efficiency.hpp"
 #include "analysis/study/imported_notes.hpp"
@@ -45,7 +46,7 @@ class VerdictOverRuns final : public MergedSums<VerdictOverRuns> {
                                    .gate = cell.find<GateScale>()};
     cell.verdict =
         judge(*sums_, {criteria_->components, criteria_->times}, analysis, ended, cell.complete);
-    if (criteria_->by_upper_bounds) take_for_upper_bounds(cell.verdict);
+    if (has_bounds(cell.settings)) take_for_upper_bounds(cell.verdict);
     const NeesSeries& series = cell.nees.front().series;
     cell.verdict.samples = series.samples;
     cell.verdict.unusable = series.unusable;

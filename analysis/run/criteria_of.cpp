@@ -73,7 +73,6 @@ DriveCriteria criteria_of_drive(const RunDrive& drive, const Eigen::Matrix3d& st
 void add_imported(const ResultFile& file, const ImportedState& imported, RunCriteria& criteria) {
   criteria.components = imported.components;
   criteria.units = imported.units;
-  criteria.by_upper_bounds = imported.has_bounds();
   criteria.has_own_scans = imported.state == kInnovationsAlone || !imported.windows.empty();
   if (imported.state == kInnovationsAlone) {
     criteria.innovation_components = imported.components.size();

@@ -19,11 +19,20 @@ std::vector<std::string> words_in(const std::string& list) {
   return words;
 }
 
+std::string value_of(const TextPairs& settings, const char* name) {
+  const auto pair = std::ranges::find(settings, name, &TextPairs::value_type::first);
+  return pair == settings.end() ? std::string() : pair->second;
+}
+
 }  // namespace
 
 std::string setting_of(const StoredCell& cell, const char* name) {
-  const auto pair = std::ranges::find(cell.settings, name, &TextPairs::value_type::first);
-  return pair == cell.settings.end() ? std::string() : pair->second;
+  return value_of(cell.settings, name);
+}
+
+bool has_bounds(const TextPairs& settings) {
+  return !value_of(settings, "pair").empty() || value_of(settings, "increments") == "bounded" ||
+         value_of(settings, "anchored") == "bounded";
 }
 
 const char* ImportedState::name_of_ratio() const {
@@ -50,7 +59,6 @@ ImportedState imported_state(const StoredCell& cell) {
   found.windows = setting("windows");
   found.bounds_increments = setting("increments") == "bounded";
   found.moved = setting("moved");
-  found.bounds_anchored = setting("anchored") == "bounded";
   found.adds_truth_covariance = setting("truth_covariance") == "added";
   found.pair = setting("pair");
   found.components = words_in(setting("components"));

@@ -25,7 +25,6 @@ struct ImportedState {
   std::string windows;  ///< [s] lengths of the windows whose increments are judged; empty if none
   bool bounds_increments = false;  ///< whether covariances of increments are only bounds
   std::string moved;  ///< what was moved of the truths onto the first estimates; empty if nothing
-  bool bounds_anchored = false;        ///< whether covariances of moved errors are only bounds
   bool adds_truth_covariance = false;  ///< whether covariances of the truths were added
   /// The two estimators whose difference is judged, by the largest covariance that it can have;
   /// empty if errors are judged.
@@ -33,8 +32,6 @@ struct ImportedState {
   std::vector<std::string> components = {"x", "y", "heading"};
   std::vector<std::string> units = {"m", "m", "rad"};
 
-  /// Whether covariances are only bounds from above.
-  bool has_bounds() const { return !pair.empty() || bounds_increments || bounds_anchored; }
   bool is_imported() const { return !state.empty(); }
   /// Name of the whole whose error is judged: "pose", "state", "innovation", ...
   std::string name_of_whole() const;
@@ -55,6 +52,10 @@ std::vector<StateBlock> blocks_of(std::span<const std::string> components,
 
 /// The value of a setting of a cell; empty if it has none of this name.
 std::string setting_of(const StoredCell& cell, const char* name);
+
+/// Whether the covariances of a cell with these settings are only bounds from above: those of
+/// pairs, of increments of corrected estimates, and of errors moved onto uncertain first estimates.
+bool has_bounds(const TextPairs& settings);
 
 /// The imported state from the settings of a cell if 'montecarta judge' made the file, else the
 /// pose in the plane.

@@ -41,9 +41,8 @@ struct RunCriteria {
   std::size_t tests_together = 1;
   /// Number of components if the judged errors are innovations, whose whiteness is tested; else 0.
   std::size_t innovation_components = 0;
-  bool has_own_scans = false;    ///< whether a cell has no estimate at scans of other cells
-  bool by_upper_bounds = false;  ///< whether covariances are only bounds from above
-  bool calibrates = false;       ///< whether the PITs of errors are judged: only with matched noise
+  bool has_own_scans = false;  ///< whether a cell has no estimate at scans of other cells
+  bool calibrates = false;     ///< whether the PITs of errors are judged: only with matched noise
   /// {interim analysis} number of runs, if cells stop when their verdict is known; else empty.
   std::vector<std::uint64_t> runs_at_analyses = {};
   /// Share of the study's runs that the file has: less than 1 in a shard.

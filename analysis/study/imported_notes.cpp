@@ -50,11 +50,21 @@ std::vector<std::string> notes_on_innovations(const StudyAnalysis& study) {
   return notes;
 }
 
+/// The cells of moved errors whose covariances are only bounds.
+std::string bounded_cells(const StudyAnalysis& study) {
+  std::string cells;
+  for (const CellAnalysis& cell : study.cells) {
+    if (study.imported.moved.empty() || !has_bounds(cell.settings)) continue;
+    cells += (cells.empty() ? "" : ", ") + cell.label;
+  }
+  return cells;
+}
+
 /// Hints on other errors and layouts. Bounds belong to the stated error alone, and have none.
 std::vector<std::string> hints_of(const StudyAnalysis& study) {
   std::vector<std::string> hints;
-  if (study.imported.has_bounds()) return hints;
   for (const CellAnalysis& cell : study.cells) {
+    if (has_bounds(cell.settings)) continue;
     const std::string hint = in_words(cell.get<ConventionHint>(), cell.label,
                                       study.imported.convention, cell.verdict.has_finding());
     if (!hint.empty()) hints.push_back(prose("components", "hint", {{"hint", hint}}));
@@ -66,8 +76,8 @@ std::vector<std::string> hints_of(const StudyAnalysis& study) {
 /// says it once.
 std::vector<std::string> notes_on_blocks(const StudyAnalysis& study) {
   std::vector<std::string> notes;
-  if (study.imported.has_bounds()) return notes;
   for (const CellAnalysis& cell : study.cells) {
+    if (has_bounds(cell.settings)) continue;
     for (const BlockVerdict& block : cell.get<std::vector<BlockVerdict>>()) {
       if (block.verdict.answer != Answer::undecided) continue;
       notes.push_back(prose(
@@ -105,7 +115,9 @@ std::vector<std::string> imported_notes(const StudyAnalysis& study) {
   }
   if (!study.imported.moved.empty())
     notes.push_back(prose("components", "anchor", {{"moved", study.imported.moved}}));
-  if (study.imported.bounds_anchored) notes.push_back(prose("components", "anchor bounded"));
+  const std::string bounded = bounded_cells(study);
+  if (!bounded.empty())
+    notes.push_back(prose("components", "anchor bounded", {{"cells", bounded}}));
   if (study.imported.adds_truth_covariance)
     notes.push_back(prose("components", "truth covariance"));
   std::ranges::move(hints_of(study), std::back_inserter(notes));

@@ -77,7 +77,12 @@ std::vector<Eigen::Index> rotation_first_order(std::span<const std::string> unit
 }
 
 double PartRatios::distance() const {
-  return std::max(std::abs(std::log(lengths)), std::abs(std::log(angles)));
+  return std::fmax(std::abs(std::log(lengths)), std::abs(std::log(angles)));  // ignores NaN
+}
+
+bool PartRatios::has_same_parts(const PartRatios& other) const {
+  return std::isnan(lengths) == std::isnan(other.lengths) &&
+         std::isnan(angles) == std::isnan(other.angles);
 }
 
 void LayoutMistakes::add(const ErrorRows& errors, std::span<const std::string> units) {
@@ -120,8 +125,8 @@ std::optional<LayoutMistake> LayoutMistakes::far_nearer() const {
   for (std::size_t k = 0; k < kLayoutMistakes; ++k) {
     const auto mistake = static_cast<LayoutMistake>(k);
     const double distance = without(mistake).distance();
-    if (!std::isfinite(distance) || !(distance <= least))
-      continue;  // also if there are no lengths, or no angles
+    if (!std::isfinite(distance) || !(distance <= least)) continue;  // also if there are no parts
+    if (!without(mistake).has_same_parts(stated())) continue;
     if (is_farther(without(mistake).lengths, stated().lengths)) continue;
     if (is_farther(without(mistake).angles, stated().angles)) continue;
     least = distance;
@@ -134,12 +139,23 @@ std::string in_words(const LayoutMistakes& mistakes) {
   const auto mistake = mistakes.far_nearer();
   if (!mistake) return "";
   const PartRatios stated = mistakes.stated(), without = mistakes.without(*mistake);
+  const bool has_lengths = !std::isnan(stated.lengths), has_angles = !std::isnan(stated.angles);
+  std::string ratios;
+  if (has_lengths && has_angles) {
+    ratios = engine::formatted(
+        "lengths are {} times their variances and those of angles {} times, instead of {} and {}",
+        compact(without.lengths), compact(without.angles), compact(stated.lengths),
+        compact(stated.angles));
+  } else {
+    ratios = engine::formatted("{} are {} times their variances, instead of {}",
+                               has_lengths ? "lengths" : "angles",
+                               compact(has_lengths ? without.lengths : without.angles),
+                               compact(has_lengths ? stated.lengths : stated.angles));
+  }
   return engine::formatted(
-      "If the covariances are written with {}, squared errors of lengths are {} times their "
-      "variances and those of angles {} times, instead of {} and {} times, which is far nearer to "
+      "If the covariances are written with {}, squared errors of {} times, which is far nearer to "
       "1, whatever the verdict would be",
-      name_of(*mistake), compact(without.lengths), compact(without.angles), compact(stated.lengths),
-      compact(stated.angles));
+      name_of(*mistake), ratios);
 }
 
 }  // namespace montecarta::analysis

@@ -32,12 +32,14 @@ bool are_positions_then_angles(std::span<const std::string> units);
 /// {component} The component whose place in the covariance this one has, if the rotation is first.
 std::vector<Eigen::Index> rotation_first_order(std::span<const std::string> units);
 
-/// Squared errors over their variances, averaged over samples: 1 is right.
+/// Squared errors over their variances, averaged over samples: 1 is right; NaN if a part has none.
 struct PartRatios {
   double lengths, angles;  ///< of components in m and in rad
 
-  /// How far the farther one is from 1: the logarithm of a factor.
+  /// How far the farther one is from 1: the logarithm of a factor. A part without samples does not
+  /// count; NaN if neither has any.
   double distance() const;
+  bool has_same_parts(const PartRatios& other) const;
 };
 
 /// Squared errors of lengths and of angles beside their variances as stated, and as they would be

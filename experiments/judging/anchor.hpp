@@ -40,7 +40,7 @@ std::optional<std::size_t> move_to_anchor(Anchor anchor, const StateRows& estima
                                           std::vector<std::optional<TrueState>>& truths);
 
 /// The error of the estimate at an anchor, which the motion of the truth carries into the errors of
-/// all later estimates (STATISTICS (19.7)).
+/// all later estimates (STATISTICS (19.8)).
 class AnchorError {
  public:
   /// `row` is that of the anchor, `convention` that of the covariances of `estimates`, which must

@@ -6,6 +6,7 @@
 #include "experiments/judging/state_rows.hpp"
 #include "experiments/judging/truth_path.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -18,29 +19,34 @@ namespace montecarta::experiments {
 /// moved errors are (STATISTICS 19). All runs are surveyed before the first one is moved.
 class AnchoredRuns {
  public:
-  AnchoredRuns(Anchor anchor, ErrorConvention convention)
-      : anchor_(anchor), convention_(convention) {}
+  AnchoredRuns(Anchor anchor, ErrorConvention convention, std::size_t cells)
+      : anchor_(anchor), convention_(convention), cells_(cells) {}
 
-  /// Looks at a run: how uncertain its anchor is, beside its later estimates.
-  void survey(const StateRows& estimates, const std::filesystem::path& path,
+  /// Looks at a run of a cell: how uncertain its anchor is, beside its later estimates.
+  void survey(std::size_t cell, const StateRows& estimates, const std::filesystem::path& path,
               std::vector<std::optional<TrueState>> truths);
-  /// Whether the anchors are so uncertain that covariances of moved errors are only bounds.
-  bool are_bounded() const;
-  /// Moves the truths of a run that was surveyed, and removes the truth of its anchor. If all
-  /// covariances are bounds, `estimates` get them; else estimates so soon after the anchor that
+  /// {cell} Whether the anchor of one of its runs is so uncertain that covariances of moved errors
+  /// are only bounds.
+  std::vector<bool> are_bounded() const;
+  /// Moves the truths of a run that was surveyed, and removes the truth of its anchor. In a bounded
+  /// cell `estimates` get the bounds as covariances; else estimates so soon after the anchor that
   /// its error is not small beside theirs lose their truth.
-  void move(StateRows& estimates, const std::filesystem::path& path,
+  void move(std::size_t cell, StateRows& estimates, const std::filesystem::path& path,
             std::vector<std::optional<TrueState>>& truths);
-  std::vector<std::string> notes() const;
+  /// Notes on cells with these labels.
+  std::vector<std::string> notes(const std::vector<std::string>& labels) const;
 
  private:
+  struct AnchoredCell {
+    bool is_bounded = false;
+    std::uint64_t removed = 0;  ///< estimates that lost their truth
+    double deviation = 0.0;     ///< of the most uncertain moved component at an anchor
+    std::string of_deviation;   ///< its component and file
+  };
+
   Anchor anchor_;
   ErrorConvention convention_;
-  std::uint64_t rows_ = 0;     ///< estimates with a truth, behind the anchors
-  std::uint64_t near_ = 0;     ///< those beside which the anchor's error is not small
-  std::uint64_t removed_ = 0;  ///< those that lost their truth
-  double deviation_ = 0.0;     ///< of the most uncertain moved component at an anchor
-  std::string of_deviation_;   ///< its component and file
+  std::vector<AnchoredCell> cells_;
 };
 
 }  // namespace montecarta::experiments

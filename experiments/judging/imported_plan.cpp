@@ -56,7 +56,6 @@ TextPairs import_settings(const StateShape& shape, const JudgingOptions& options
   if (options.anchor) {
     settings.emplace_back("anchor", name_of(*options.anchor));
     settings.emplace_back("moved", moved_by(*options.anchor));
-    if (options.bounds_anchored) settings.emplace_back("anchored", "bounded");
   }
   if (!options.pair.empty()) settings.emplace_back("pair", options.pair);
   if (options.adds_truth_covariance) settings.emplace_back("truth_covariance", "added");
@@ -120,6 +119,8 @@ StudyPlan imported_plan(const EstimateSource& source, const StateRows& first,
   plan.columns = {.ancestry = false, .scans_only = true};
   for (std::size_t c = 0; c < source.cells().size(); ++c) {
     TextPairs all = settings;
+    if (!options.bounds_anchored.empty() && options.bounds_anchored[c])
+      all.emplace_back("anchored", "bounded");
     std::ranges::copy(source.settings(c), std::back_inserter(all));
     plan.cells.push_back(imported_cell(source.cells()[c], first, components, std::move(all)));
   }

@@ -67,7 +67,7 @@ void InnovationFiles::add_parts(std::size_t files, const Sensors& sensors,
         files, sensors.size() < 2 ? "" : sensor, gates ? gates->of(sensor) : std::nullopt, {}};
     labels_.push_back(part.sensor.empty() ? label : formatted("{}.{}", label, sensor));
     if (!part.sensor.empty()) {
-      check_label(labels_.back());
+      check_label(labels_.back(), "rename the sensor");
       part.settings.emplace_back("sensor", sensor);
     }
     if (part.gate) {

@@ -318,7 +318,8 @@ struct RunNotes {
     if (!uncorrelated.empty()) notes.push_back(uncorrelated);
     for (const auto& some :
          {unwrapped.notes(), notes_on_times(overview, missing), use.notes(options->match.is_pair),
-          anchored == nullptr ? std::vector<std::string>() : anchored->notes(), mistakes.notes()}) {
+          anchored == nullptr ? std::vector<std::string>() : anchored->notes(source.cells()),
+          mistakes.notes()}) {
       notes.insert(notes.end(), some.begin(), some.end());
     }
     for (std::size_t c = 0; c < unusable.size(); ++c) {
@@ -346,11 +347,12 @@ void remove_first(StateRows& rows, Truths& truths) {
 
 /// The truths {row} of a run, moved onto its anchor if there is one, which `rows` lose. The
 /// covariances of their own errors are added to those of `rows`.
-std::vector<std::optional<TrueState>> truths_for(StateRows& rows, const fs::path& path,
-                                                 const TruthPath& truth, RunNotes& notes) {
+std::vector<std::optional<TrueState>> truths_for(std::size_t cell, StateRows& rows,
+                                                 const fs::path& path, const TruthPath& truth,
+                                                 RunNotes& notes) {
   auto truths = truth.at(rows, path, notes.use);
   if (notes.anchored != nullptr) {
-    notes.anchored->move(rows, path, truths);
+    notes.anchored->move(cell, rows, path, truths);
     remove_first(rows, truths);
   }
   for (std::size_t row = 0; row < truths.size(); ++row) {
@@ -400,7 +402,7 @@ std::vector<MatchedRows> matched_run(const EstimateSource& source, std::size_t r
     }
     // The errors of increments are computed, and no file has them.
     if (notes.options->windows.empty()) notes.mistakes.add(c, rows, path, truth_rows);
-    auto truths = truths_for(rows, path, *truth, notes);
+    auto truths = truths_for(c, rows, path, *truth, notes);
     std::vector<std::size_t> scans = all.clock.scans_of(rows.time);
     cells.push_back({std::move(rows), std::move(scans), std::move(truths)});
     if (source.has_common_truths()) cells.back().truth_end = truth->end();
@@ -431,7 +433,7 @@ bool compares_starts(const JudgingOptions& options) {
 std::optional<AnchoredRuns> anchored_runs(const EstimateSource& source,
                                           const JudgingOptions& options, const Overview& all) {
   if (!options.anchor || !has_states(all)) return std::nullopt;
-  AnchoredRuns anchored(*options.anchor, *options.convention);
+  AnchoredRuns anchored(*options.anchor, *options.convention, source.cells().size());
   LikelyMistakes units(source.cells(), *options.convention, false, false);  // refuses wrong ones
   for (std::size_t run = 0; run < source.runs().size(); ++run) {
     for (std::size_t c = 0; c < source.cells().size(); ++c) {
@@ -443,7 +445,7 @@ std::optional<AnchoredRuns> anchored_runs(const EstimateSource& source,
       units.add(c, rows, path, truth_rows);
       const TruthPath truth(truth_rows, source.truth_place(c, run), options.match);
       TruthUse ignored;  // which is said when the run is judged
-      anchored.survey(rows, path, truth.at(rows, path, ignored));
+      anchored.survey(c, rows, path, truth.at(rows, path, ignored));
     }
   }
   return anchored;
@@ -492,7 +494,7 @@ std::vector<std::string> judge_estimates(const EstimateSource& source,
                            ? ErrorConvention::world
                            : stated_error(all.rows.shape, all.path, given.convention);
   std::optional<AnchoredRuns> anchored = anchored_runs(source, options, all);
-  options.bounds_anchored = anchored && anchored->are_bounded();
+  if (anchored) options.bounds_anchored = anchored->are_bounded();
   const StudyPlan plan = imported_plan(source, all.rows, all.clock.times(), options);
   ResultWriter writer =
       ResultWriter::create(options.output, plan, options.provenance, options.existing);

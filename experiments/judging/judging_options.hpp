@@ -22,8 +22,9 @@ struct JudgingOptions {
   /// The convention; nullopt if the user gave none, which is allowed for a state that has only one.
   std::optional<ErrorConvention> convention = {};
   TimeMatch match;
-  std::optional<Anchor> anchor = {};   ///< how truths are moved onto the first estimates
-  bool bounds_anchored = false;        ///< whether covariances of moved errors are only bounds
+  std::optional<Anchor> anchor = {};  ///< how truths are moved onto the first estimates
+  /// {cell} whether covariances of moved errors are only bounds; empty without an anchor
+  std::vector<bool> bounds_anchored = {};
   bool adds_truth_covariance = false;  ///< whether truths have errors, of known covariance
   std::string pair =
       {};  ///< two estimators, the second of which is in place of the truth; or empty

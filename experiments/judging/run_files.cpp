@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdint>
 #include <map>
 #include <set>
 #include <span>
@@ -52,20 +53,25 @@ std::vector<fs::path> truths_in(const std::string& word) {
 
 using FilesByRun = std::map<RunKey, fs::path>;
 
-void add_run(const NumberedFile& file, FilesByRun& files) {
+enum class RunFile : std::uint8_t { estimate, truth };
+
+void add_run(const NumberedFile& file, RunFile kind, FilesByRun& files) {
+  const bool is_truth = kind == RunFile::truth;
   if (file.run.empty()) {
     throw StudyError(
-        file.path.string() +
-        ": has no run number (neither the file nor a folder is named after one; a number "
-        "behind other letters belongs to the name): name it or its folder e.g. run_0007 or ekf_7, "
-        "or give --cell NAME if all are runs of one estimator");
+        "{}: has no run number (neither the file nor a folder is named after one; a number behind "
+        "other letters belongs to the name): name it or its folder e.g. {}",
+        file.path,
+        is_truth ? "run_0007"
+                 : "run_0007 or ekf_7, or give --cell NAME if all are runs of one estimator");
   }
   const auto [there, is_new] = files.try_emplace(file.run, file.path);
   if (is_new) return;
-  throw StudyError(
-      "{}: run {} again ({} has the same number and the same estimator): give each run a number, "
-      "each estimator a folder or a name, or --cell NAME if all are runs of one estimator",
-      file.path, to_text(file.run), there->second);
+  throw StudyError("{}: run {} again ({} has the same number{}): {}", file.path, to_text(file.run),
+                   there->second, is_truth ? "" : " and the same estimator",
+                   is_truth ? "give each truth the number of its run"
+                            : "give each run a number, each estimator a folder or a name, or "
+                              "--cell NAME if all are runs of one estimator");
 }
 
 /// The words in which a cell's path differs from those of the other cells, joined to a label.
@@ -91,7 +97,7 @@ std::map<std::string, FilesByRun> cells_of(const std::vector<NumberedFile>& file
                                            const std::optional<std::string>& cell) {
   std::map<std::vector<std::string>, FilesByRun> by_path;
   for (const NumberedFile& file : files) {
-    add_run(file, by_path[cell ? std::vector<std::string>{*cell} : file.rest]);
+    add_run(file, RunFile::estimate, by_path[cell ? std::vector<std::string>{*cell} : file.rest]);
   }
   std::vector<std::vector<std::string>> paths;
   for (const auto& [path, runs] : by_path) paths.push_back(path);
@@ -161,7 +167,8 @@ FilesByRun truths_of(const FilesByRun& first, const std::vector<std::string>& tr
   const std::vector<fs::path> truth_files = all_truths(truths);
   FilesByRun truth_of;
   if (truth_files.size() != 1) {
-    for (const NumberedFile& file : numbered_files(truth_files)) add_run(file, truth_of);
+    for (const NumberedFile& file : numbered_files(truth_files))
+      add_run(file, RunFile::truth, truth_of);
     return truth_of;
   }
   const RunKey of_run = own_run_of(truth_files.front());
@@ -232,15 +239,13 @@ std::vector<std::string> names_of(const FilesByRun& runs) {
 
 }  // namespace
 
-void check_label(const std::string& label) {
+void check_label(const std::string& label, const std::string& remedy) {
   const bool is_good = std::ranges::all_of(label, [](unsigned char c) {
     return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '.';
   });
   if (is_good && !label.empty() && label.size() <= 100 && label != "." && label != "..") return;
-  throw StudyError(
-      "'{}' cannot label a cell (up to 100 letters, digits, _ - . can): rename the folder, or give "
-      "--cell NAME",
-      excerpt(label));
+  throw StudyError("'{}' cannot label a cell (up to 100 letters, digits, _ - . can): {}",
+                   excerpt(label), remedy);
 }
 
 JudgedFiles pair_files(const std::vector<std::string>& estimates,
@@ -248,8 +253,8 @@ JudgedFiles pair_files(const std::vector<std::string>& estimates,
                        const std::optional<std::string>& cell) {
   std::vector<NumberedFile> files =
       numbered_files(std::vector<fs::path>(estimates.begin(), estimates.end()));
+  if (cell) check_label(*cell, "give another --cell NAME");
   if (cell && files.size() > 1 && !have_own_numbers(files)) {
-    check_label(*cell);
     return pair_by_words({estimates.begin(), estimates.end()}, all_truths(truths), *cell);
   }
   const bool is_unnumbered = files.size() == 1 && files.front().run.empty();
@@ -305,7 +310,7 @@ JudgedFiles files_of_pair(const std::vector<std::string>& files) {
   JudgedFiles judged;
   judged.runs = {0};
   for (const auto& [of, file] : {std::pair(of_a, a), std::pair(of_b, b)}) {
-    check_label(of.stem().string());
+    check_label(of.stem().string(), "rename the file or its folder");
     judged.cells.push_back({of.stem().string(), {file}});
   }
   judged.truth = judged.cells.back().of_run;

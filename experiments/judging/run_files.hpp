@@ -38,8 +38,9 @@ JudgedFiles pair_files(const std::vector<std::string>& estimates,
 /// called by their files or, if these have the same name, by their folders.
 JudgedFiles files_of_pair(const std::vector<std::string>& files);
 
-/// Throws StudyError if a cell cannot be called `label`.
-void check_label(const std::string& label);
+/// Throws StudyError with this remedy if a cell cannot be called `label`.
+void check_label(const std::string& label,
+                 const std::string& remedy = "rename the folder, or give --cell NAME");
 
 /// A sentence on runs that are numbered anew; empty if they are not.
 std::string note_on_names(const JudgedFiles& files);

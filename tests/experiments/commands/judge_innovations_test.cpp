@@ -47,6 +47,9 @@ TEST_F(JudgeInnovations, OfSeveralSensorsAreJudgedSensorBySensor) {
   EXPECT_EQ(column_of("i.lidar", "nis")[1], 6.0);
   write("bad_0.csv", "time_s,sensor,nis,nis_dof\n1,,2,2\n");
   EXPECT_THAT(judged({"bad_0.csv"}, {"--innovations"}).err, HasSubstr("bad_0.csv:2: no sensor"));
+  write("bad_0.csv", "time_s,sensor,nis,nis_dof\n1,a b,2,2\n2,c,2,2\n");
+  EXPECT_THAT(judged({"bad_0.csv"}, {"--innovations"}).err,
+              AllOf(HasSubstr("'bad.a b' cannot label a cell"), HasSubstr("): rename the sensor")));
   write("e.csv", "time_s,sensor,a,cov_0_0\n1,gps,2,2\n");
   EXPECT_THAT(judged({"e.csv"}, {"--truth", "e.csv"}).err,
               HasSubstr("'sensor' names the sensor of an innovation"));

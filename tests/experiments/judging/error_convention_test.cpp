@@ -377,6 +377,19 @@ TEST(ConventionHints, NameMistakesThatBringTheErrorsFarNearer) {
   EXPECT_EQ(hint_on_layout(shape.units, errors.asDiagonal(), variances.asDiagonal()), "");
 }
 
+// A state may have no angles, or no lengths.
+TEST(ConventionHints, NameMistakesOfStatesWithOneUnit) {
+  const Eigen::MatrixXd P = 0.25 * Eigen::MatrixXd::Identity(2, 2);
+  const std::vector<std::string> lengths = {"m", "m"}, angles = {"rad", "rad"};
+  EXPECT_THAT(hint_on_layout(lengths, P, P * 1e6 / 2.56),
+              AllOf(HasSubstr("with lengths in mm, squared errors of lengths are 2."),
+                    Not(HasSubstr("angles"))));
+  EXPECT_THAT(hint_on_layout(angles, P, P * std::pow(180.0 / kPi, 2) / 2.56),
+              AllOf(HasSubstr("with angles in degrees, squared errors of angles are 2."),
+                    Not(HasSubstr("lengths"))));
+  EXPECT_EQ(hint_on_layout(std::vector<std::string>{"s", "s"}, P, 1e6 * P), "");
+}
+
 TEST(ConventionHints, NameConventionsThatBringTheErrorsFarNearer) {
   ConventionHint hint = hint_of(plane_shape(), ErrorConvention::body, 1);
   const auto with_ratio = [&](double ratio) {

@@ -142,10 +142,17 @@ TEST(RunFiles, ThatDoNotFitAreNamed) {
               HasSubstr("r/run_5/e.csv: run 4"));
   EXPECT_THAT(refusal_of({"a.csv", "b.csv"}, kTruths), HasSubstr("a.csv: has no run number"));
   EXPECT_THAT(refusal_of({"r/run_3.csv", "r/run_03.csv"}, kTruths), HasSubstr("run 3 again"));
+  const Paths two = {"r/run_3.csv", "r/run_4.csv"};
+  EXPECT_THAT(refusal_of(two, {"a.csv", "b.csv"}),
+              AllOf(HasSubstr("a.csv: has no run number"), Not(HasSubstr("--cell"))));
+  EXPECT_THAT(refusal_of(two, {"t/run_3.csv", "t/run_03.csv"}),
+              AllOf(HasSubstr("run 3 again"), Not(HasSubstr("--cell"))));
   EXPECT_THAT(refusal_of({"a/run_3.csv", "a/run_4.csv", "b/run_3.csv"}, kTruths),
               HasSubstr("run 4 has no"));
   EXPECT_THAT(refusal_of({"a b/run_3.csv", "a b/run_4.csv"}, kTruths),
-              HasSubstr("cannot label a cell"));
+              AllOf(HasSubstr("cannot label a cell"), HasSubstr("rename the folder")));
+  EXPECT_THAT(complaint_of([] { pair_files({"a.csv"}, {"t.csv"}, "a b"); }),
+              HasSubstr("): give another --cell NAME"));
 }
 
 TEST(PairFiles, GivesASingleTruthToAllRunsUnlessItIsOfOne) {
