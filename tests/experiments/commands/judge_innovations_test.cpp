@@ -69,6 +69,10 @@ TEST_F(JudgeInnovations, BehindAGateArePutOnTheScaleWithoutOne) {
   EXPECT_THAT(judged({"i.csv"}, {"--innovations", "--gate", "99.9%"}).err,
               HasSubstr("stored in mine.h5"));
   EXPECT_THAT(judged({"i.csv"}, {"--gate", "8"}).err, HasSubstr("--gate: needs --innovations"));
+  write("z.csv", "time_s,nis,nis_dof\n1,0,2\n2,0,2\n");
+  EXPECT_THAT(judged({"z.csv"}, {"--innovations", "--gate", "0.0001%"}).err,
+              HasSubstr("--gate 0.0001%: a limit of"))
+      << "and nothing is stored that is damaged";
   EXPECT_THAT(judged({"i.csv"}, {"--innovations", "--error", "world"}).err,
               HasSubstr("--error: not beside --innovations"));
 }
