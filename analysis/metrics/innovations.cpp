@@ -9,8 +9,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <map>
 #include <numeric>
-#include <set>
 #include <span>
 #include <string>
 #include <tuple>
@@ -109,13 +109,11 @@ std::string largest_text(const LargestInnovation& largest) {
          time_text(largest.time, largest.origin) + " of run " + std::to_string(largest.run);
 }
 
-std::vector<TextTable::Entry> innovation_row(const CellAnalysis& cell, double level) {
+std::vector<TextTable::Entry> innovation_row(const CellAnalysis& cell) {
   std::vector<TextTable::Entry> row;
   const Innovations* found = cell.find<Innovations>();
   if (found == nullptr) return row;
-  // Only innovations alone have a level of their own.
-  add_entries(kInnovationQuantities, *found, found->judges_size() ? found->verdict.level : level,
-              row);
+  add_entries(kInnovationQuantities, *found, found->verdict.level, row);
   const std::size_t lag = found->worst_lag;
   const auto at_worst = [&](const std::vector<double>& values) {
     return lag == 0 ? "-" : readable(values[lag - 1]);
@@ -133,15 +131,16 @@ std::vector<TextTable::Entry> innovation_row(const CellAnalysis& cell, double le
 /// Returns the bands within which white innovations stay: one for each different width among the
 /// cells; none if no lag was tested.
 std::vector<Band> white_bands(const StudyAnalysis& study) {
-  std::set<double> bounds;
+  std::map<double, double> level_of_bound;
   for (const CellAnalysis& cell : study.cells) {
     const Innovations* found = cell.find<Innovations>();
-    if (found != nullptr && found->worst_lag > 0) bounds.insert(widest_bound(*found));
+    if (found == nullptr || found->worst_lag == 0) continue;
+    level_of_bound.emplace(widest_bound(*found), found->verdict.level);
   }
   std::vector<Band> bands;
-  for (const double bound : bounds) {
+  for (const auto& [bound, level] : level_of_bound) {
     bands.push_back(
-        {bands.empty() ? level_text(study.level) + " band of white ones" : "", -bound, bound});
+        {bands.empty() ? level_text(level) + " band of white ones" : "", -bound, bound});
   }
   return bands;
 }
@@ -229,9 +228,7 @@ std::vector<Section::Block> leads_of(const StudyAnalysis& study) {
 
 std::vector<Section> innovations_sections(const StudyAnalysis& study) {
   const CellNumber nis = [](const CellAnalysis& cell) { return cell.get<Innovations>().ratio; };
-  const CellEntries row = [&](const CellAnalysis& cell) {
-    return innovation_row(cell, study.level);
-  };
+  const CellEntries row = [](const CellAnalysis& cell) { return innovation_row(cell); };
   std::vector<Section> sections = table_section(
       section_of("innovations", {{"nis", range_over_cells(study, nis)}}), cell_table(study, row),
       {{"lags", std::to_string(kInnovationLags)}, {"runs", std::to_string(kFewestRunsOfSize)}});

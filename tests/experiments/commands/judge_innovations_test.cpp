@@ -181,6 +181,16 @@ TEST_F(JudgeInnovations, OfSensorsWithOppositeFaultsAreBothOff) {
     EXPECT_TRUE(found.components.front().has_bias()) << cell.label;
     EXPECT_FALSE(found.judges_size()) << "the verdict on errors does";
   }
+  // Whiteness and size of two sensors are judged together; the average NEES is by itself.
+  const auto table = [&](const char* name) {
+    return call({"analyze", "mine.h5", "--table", name}).out;
+  };
+  EXPECT_THAT(table("innovations"), HasSubstr("[98.75 %]"));
+  EXPECT_THAT(table("innovations"), Not(HasSubstr("[95 %]")));
+  EXPECT_THAT(table("consistency"), HasSubstr("[95 %]"));
+  EXPECT_THAT(table("consistency"), Not(HasSubstr("[98.75 %]")));
+  ASSERT_EQ(call({"analyze", "mine.h5", "--csv", "csv"}).code, 0);
+  EXPECT_THAT(text_of("csv/families.csv"), AllOf(HasSubstr(",level"), HasSubstr(",0.9875\n")));
 }
 
 TEST_F(JudgeInnovations, WithComponentsHaveABiasAndCorrelations) {
