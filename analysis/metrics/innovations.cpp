@@ -109,7 +109,13 @@ std::string largest_text(const LargestInnovation& largest) {
          time_text(largest.time, largest.origin) + " of run " + std::to_string(largest.run);
 }
 
-std::vector<TextTable::Entry> innovation_row(const CellAnalysis& cell) {
+/// Whether a cell has innovations that passed a gate, so that the stored NIS are those of (9.3).
+bool has_gate(const StudyAnalysis& study) {
+  return std::ranges::any_of(
+      study.cells, [](const CellAnalysis& cell) { return cell.find<GateScale>() != nullptr; });
+}
+
+std::vector<TextTable::Entry> innovation_row(const CellAnalysis& cell, bool is_gated) {
   std::vector<TextTable::Entry> row;
   const Innovations* found = cell.find<Innovations>();
   if (found == nullptr) return row;
@@ -123,7 +129,8 @@ std::vector<TextTable::Entry> innovation_row(const CellAnalysis& cell) {
                                             (lag == 0 ? "" : " at lag " + std::to_string(lag))});
   row.push_back({"its bound", at_worst(found->white_bound)});
   row.push_back({"innovations", whiteness_in_words(*found), Align::left});
-  row.push_back({"largest NIS", largest_text(found->largest), Align::left});
+  row.push_back({is_gated ? "largest NIS, as if without the gate" : "largest NIS",
+                 largest_text(found->largest), Align::left});
   row.push_back({"mean without it", readable(found->largest.ratio_without)});
   return row;
 }
@@ -173,12 +180,14 @@ std::vector<std::string> largest_notes(const StudyAnalysis& study) {
     const Innovations* found = cell.find<Innovations>();
     if (found == nullptr || !found->are_decided_by_largest()) continue;
     const LargestInnovation& largest = found->largest;
-    notes.push_back(prose("innovations", "largest",
-                          {{"cell", cell.label},
-                           {"largest", largest_text(largest)},
-                           {"words", whiteness_without_largest(*found)},
-                           {"without", readable(largest.ratio_without)},
-                           {"with", readable(found->ratio)}}));
+    const bool is_gated = cell.find<GateScale>() != nullptr;
+    notes.push_back(
+        prose("innovations", "largest",
+              {{"cell", cell.label},
+               {"largest", largest_text(largest) + (is_gated ? ", as if without the gate" : "")},
+               {"words", whiteness_without_largest(*found)},
+               {"without", readable(largest.ratio_without)},
+               {"with", readable(found->ratio)}}));
   }
   return notes;
 }
@@ -228,7 +237,9 @@ std::vector<Section::Block> leads_of(const StudyAnalysis& study) {
 
 std::vector<Section> innovations_sections(const StudyAnalysis& study) {
   const CellNumber nis = [](const CellAnalysis& cell) { return cell.get<Innovations>().ratio; };
-  const CellEntries row = [](const CellAnalysis& cell) { return innovation_row(cell); };
+  const CellEntries row = [&](const CellAnalysis& cell) {
+    return innovation_row(cell, has_gate(study));
+  };
   std::vector<Section> sections = table_section(
       section_of("innovations", {{"nis", range_over_cells(study, nis)}}), cell_table(study, row),
       {{"lags", std::to_string(kInnovationLags)}, {"runs", std::to_string(kFewestRunsOfSize)}});

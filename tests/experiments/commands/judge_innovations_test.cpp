@@ -60,6 +60,9 @@ TEST_F(JudgeInnovations, BehindAGateArePutOnTheScaleWithoutOne) {
   EXPECT_GT(nis[0], 20.0) << "the largest that the gate lets pass";
   EXPECT_NEAR(nis[1], analysis::chi_squared_before_gate(1.0, 2.0, 9.0), 1e-12);
   EXPECT_EQ(nis[2], 0.0);
+  EXPECT_THAT(call({"analyze", "mine.h5", "--table", "innovations"}).out,
+              HasSubstr("as if without"))
+      << "the given NIS is not stored";
   EXPECT_THAT(called.out, ContainsRegex("innovations[ \n]+passes: i \\(9\\)"));
   EXPECT_THAT(judged({"i.csv"}, {"--innovations", "--gate", "8"}).err,
               HasSubstr("i.csv:2: a NIS of 9 is beyond --gate 8"));
