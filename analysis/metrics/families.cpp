@@ -20,7 +20,8 @@ TextTable family_table(const StudyAnalysis& study) {
                  {"family", name_of(test.family), Align::left},
                  {"p", readable(test.p, 2)},
                  {"farthest from right", name_of(member), Align::left},
-                 {"estimate [" + level_text(study.level) + "]",
+                 {"level", level_text(cell.verdict.level)},
+                 {"estimate and its interval",
                   is_ratio(test.family) ? ratio_with_interval(member.estimate, member.interval)
                                         : with_interval(member.estimate, member.interval)},
                  {"shown", test.is_rejected ? "yes" : "no", Align::left}});
@@ -49,9 +50,11 @@ Frame families_frame(const StudyAnalysis& study) {
   for (const CellAnalysis& cell : study.cells) {
     for (const FamilyTest& test : cell.verdict.families) {
       for (const Member& member : test.members) {
+        Frame::Row row = family_row(test, member);
+        row.emplace_back("level", "1", cell.verdict.level);
         frame.add(
             {{"cell", cell.label}, {"family", key_of(test.family)}, {"member", name_of(member)}},
-            family_row(test, member));
+            row);
       }
     }
   }

@@ -9,8 +9,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <map>
 #include <numeric>
-#include <set>
 #include <span>
 #include <string>
 #include <tuple>
@@ -109,13 +109,17 @@ std::string largest_text(const LargestInnovation& largest) {
          time_text(largest.time, largest.origin) + " of run " + std::to_string(largest.run);
 }
 
-std::vector<TextTable::Entry> innovation_row(const CellAnalysis& cell, double level) {
+/// Whether a cell has innovations that passed a gate, so that the stored NIS are those of (9.3).
+bool has_gate(const StudyAnalysis& study) {
+  return std::ranges::any_of(
+      study.cells, [](const CellAnalysis& cell) { return cell.find<GateScale>() != nullptr; });
+}
+
+std::vector<TextTable::Entry> innovation_row(const CellAnalysis& cell, bool is_gated) {
   std::vector<TextTable::Entry> row;
   const Innovations* found = cell.find<Innovations>();
   if (found == nullptr) return row;
-  // Only innovations alone have a level of their own.
-  add_entries(kInnovationQuantities, *found, found->judges_size() ? found->verdict.level : level,
-              row);
+  add_entries(kInnovationQuantities, *found, found->verdict.level, row);
   const std::size_t lag = found->worst_lag;
   const auto at_worst = [&](const std::vector<double>& values) {
     return lag == 0 ? "-" : readable(values[lag - 1]);
@@ -125,7 +129,8 @@ std::vector<TextTable::Entry> innovation_row(const CellAnalysis& cell, double le
                                             (lag == 0 ? "" : " at lag " + std::to_string(lag))});
   row.push_back({"its bound", at_worst(found->white_bound)});
   row.push_back({"innovations", whiteness_in_words(*found), Align::left});
-  row.push_back({"largest NIS", largest_text(found->largest), Align::left});
+  row.push_back({is_gated ? "largest NIS, as if without the gate" : "largest NIS",
+                 largest_text(found->largest), Align::left});
   row.push_back({"mean without it", readable(found->largest.ratio_without)});
   return row;
 }
@@ -133,15 +138,16 @@ std::vector<TextTable::Entry> innovation_row(const CellAnalysis& cell, double le
 /// Returns the bands within which white innovations stay: one for each different width among the
 /// cells; none if no lag was tested.
 std::vector<Band> white_bands(const StudyAnalysis& study) {
-  std::set<double> bounds;
+  std::map<double, double> level_of_bound;
   for (const CellAnalysis& cell : study.cells) {
     const Innovations* found = cell.find<Innovations>();
-    if (found != nullptr && found->worst_lag > 0) bounds.insert(widest_bound(*found));
+    if (found == nullptr || found->worst_lag == 0) continue;
+    level_of_bound.emplace(widest_bound(*found), found->verdict.level);
   }
   std::vector<Band> bands;
-  for (const double bound : bounds) {
+  for (const auto& [bound, level] : level_of_bound) {
     bands.push_back(
-        {bands.empty() ? level_text(study.level) + " band of white ones" : "", -bound, bound});
+        {bands.empty() ? level_text(level) + " band of white ones" : "", -bound, bound});
   }
   return bands;
 }
@@ -174,12 +180,14 @@ std::vector<std::string> largest_notes(const StudyAnalysis& study) {
     const Innovations* found = cell.find<Innovations>();
     if (found == nullptr || !found->are_decided_by_largest()) continue;
     const LargestInnovation& largest = found->largest;
-    notes.push_back(prose("innovations", "largest",
-                          {{"cell", cell.label},
-                           {"largest", largest_text(largest)},
-                           {"words", whiteness_without_largest(*found)},
-                           {"without", readable(largest.ratio_without)},
-                           {"with", readable(found->ratio)}}));
+    const bool is_gated = cell.find<GateScale>() != nullptr;
+    notes.push_back(
+        prose("innovations", "largest",
+              {{"cell", cell.label},
+               {"largest", largest_text(largest) + (is_gated ? ", as if without the gate" : "")},
+               {"words", whiteness_without_largest(*found)},
+               {"without", readable(largest.ratio_without)},
+               {"with", readable(found->ratio)}}));
   }
   return notes;
 }
@@ -230,7 +238,7 @@ std::vector<Section::Block> leads_of(const StudyAnalysis& study) {
 std::vector<Section> innovations_sections(const StudyAnalysis& study) {
   const CellNumber nis = [](const CellAnalysis& cell) { return cell.get<Innovations>().ratio; };
   const CellEntries row = [&](const CellAnalysis& cell) {
-    return innovation_row(cell, study.level);
+    return innovation_row(cell, has_gate(study));
   };
   std::vector<Section> sections = table_section(
       section_of("innovations", {{"nis", range_over_cells(study, nis)}}), cell_table(study, row),

@@ -4,6 +4,7 @@
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
+#include <boost/math/policies/policy.hpp>
 #include <boost/math/tools/toms748_solve.hpp>
 
 #include <algorithm>
@@ -20,22 +21,25 @@ using boost::math::quantile;
 constexpr double kLeastTail = 1e-17;  // tail of a level that rounding made 1
 constexpr double kLeastTailOfSquares = 1e-300;
 
+/// A factor overflows for values far below a large freedom, although the results are 0 and 1.
+using IgnoringOverflow = boost::math::policies::policy<
+    boost::math::policies::overflow_error<boost::math::policies::ignore_error>>;
+using ChiSquared = boost::math::chi_squared_distribution<double, IgnoringOverflow>;
+
 }  // namespace
 
 double normal_cdf(double z) { return cdf(boost::math::normal(), z); }
 double normal_quantile(double probability) { return quantile(boost::math::normal(), probability); }
 
-double chi_squared_cdf(double value, double freedom) {
-  return cdf(boost::math::chi_squared(freedom), value);
-}
+double chi_squared_cdf(double value, double freedom) { return cdf(ChiSquared(freedom), value); }
 double chi_squared_tail(double value, double freedom) {
-  return cdf(complement(boost::math::chi_squared(freedom), value));
+  return cdf(complement(ChiSquared(freedom), value));
 }
 double chi_squared_quantile(double probability, double freedom) {
-  return quantile(boost::math::chi_squared(freedom), probability);
+  return quantile(ChiSquared(freedom), probability);
 }
 double chi_squared_beyond(double tail, double freedom) {
-  return quantile(complement(boost::math::chi_squared(freedom), tail));
+  return quantile(complement(ChiSquared(freedom), tail));
 }
 
 double chi_squared_before_gate(double value, double freedom, double most) {

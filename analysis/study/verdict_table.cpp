@@ -61,6 +61,11 @@ const std::vector<ResultNumber<NeesResult>> kNeesQuantities = {
     {"unjudged_runs", "1", samples_of<&NeesSeries::unjudged_runs>, "unjudged runs",
      whole_number_text}};
 
+/// Heading of a column of ratios with intervals at `level`.
+std::string ratio_heading(const StudyAnalysis& study, double level) {
+  return std::string(study.imported.name_of_ratio()) + " [" + level_text(level) + "]";
+}
+
 std::vector<TextTable::Entry> consistency_row(const StudyAnalysis& study, const CellAnalysis& cell,
                                               const NeesResult& nees) {
   const auto d = static_cast<double>(nees.series.dimension);
@@ -75,7 +80,7 @@ std::vector<TextTable::Entry> consistency_row(const StudyAnalysis& study, const 
       {"error", name_of(nees.block), Align::left},
       {"covariance", name_of(nees.moments), Align::left},
       {"ANEES", compact(nees.mean)},
-      {ratio_heading(study), ratio_with_interval(ratio, average)},
+      {ratio_heading(study, study.level), ratio_with_interval(ratio, average)},
       {"ideal", readable(ideal_nees(cell, nees))},
       {level_text(study.level) + " band", band_text(cell, nees.series.dimension, study.level)}};
   add_entries(kNeesQuantities, nees, study.level, row);
@@ -124,7 +129,7 @@ Frame::Row numbers_of(const CellAnalysis& cell, const NeesResult& nees, double l
 std::string ratio_heading(const StudyAnalysis& study) {
   const bool is_of_innovations = study.imported.state == kInnovationsAlone && !study.cells.empty();
   const double level = is_of_innovations ? study.cells.front().verdict.level : study.level;
-  return std::string(study.imported.name_of_ratio()) + " [" + level_text(level) + "]";
+  return ratio_heading(study, level);
 }
 
 std::string ratio_text_of(const Verdict& verdict) {

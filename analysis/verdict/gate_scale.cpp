@@ -32,6 +32,11 @@ double shown_by(const GatedRows& rows, double factor) {
 
 }  // namespace
 
+bool GatedRows::is_usable() const {
+  return count >= 1.0 && count < 1e15 && components >= 1.0 && components < kMostComponents &&
+         limit > kLeastLimit && limit < kMostLimit;
+}
+
 GateScale::GateScale(const std::vector<GatedRows>& rows) : rows_(rows) {
   const auto steps = static_cast<int>(2.0 * std::log2(kMostFactor) * kStepsPerOctave);
   for (int step = 0; step <= steps; ++step) {
@@ -90,9 +95,7 @@ std::optional<GateScale> gate_scale_of(const std::string& limits) {
     std::istringstream text(limits.substr(begin, end - begin));
     std::string word;
     text >> one.count >> word >> word >> one.components >> word >> word >> one.limit;
-    const bool is_good = text && one.count >= 1.0 && one.count < 1e15 && one.components >= 1.0 &&
-                         one.components < 1e4 && one.limit > 1e-3 && one.limit < 1e6;
-    if (!is_good) return std::nullopt;
+    if (!text || !one.is_usable()) return std::nullopt;
     rows.push_back(one);
     begin = end + 2;
   }

@@ -15,6 +15,10 @@ struct GatedRows {
   double count = 0.0;
   double components = 0.0;  ///< of each row
   double limit = 0.0;       ///< largest NIS
+
+  static constexpr double kLeastLimit = 1e-3, kMostLimit = 1e6, kMostComponents = 1e4;
+  /// Whether the factor of such rows can be found: all numbers are within the limits above.
+  bool is_usable() const;
 };
 
 /// The size of innovations behind a gate (STATISTICS (9.4)). Their NIS is put on the scale of a

@@ -2,6 +2,8 @@
 #include "experiments/judging/passed_innovations.hpp"
 
 #include "analysis/statistics/distributions.hpp"
+#include "analysis/verdict/gate_scale.hpp"
+#include "engine/errors.hpp"
 #include "engine/formatted.hpp"
 #include "engine/text/number_text.hpp"
 #include "experiments/text/words.hpp"
@@ -59,8 +61,17 @@ void PassedInnovations::add(const PassedInnovations& others) {
 std::string PassedInnovations::limits_of(const Gate& gate) const {
   std::string text;
   for (const auto& [components, rows] : rows_) {
+    const analysis::GatedRows passed{static_cast<double>(rows.count),
+                                     static_cast<double>(components), gate.limit(components)};
+    if (!passed.is_usable()) {
+      throw StudyError(
+          "--gate {}: a limit of {} for the NIS of {} components (it must be above {} and below "
+          "{}, of fewer than {} components): write e.g. 9 or 99%",
+          gate.text(), to_text(passed.limit), components, to_text(passed.kLeastLimit),
+          to_text(passed.kMostLimit), to_text(passed.kMostComponents));
+    }
     text += formatted("{}{} rows of {} up to {}", text.empty() ? "" : ", ", rows.count, components,
-                      to_text(gate.limit(components)));
+                      to_text(passed.limit));
   }
   return text;
 }

@@ -18,7 +18,8 @@ class PassedInnovations {
   void add(const PassedInnovations& others);
 
   /// The limits of a gate with the numbers of rows that passed them, as a setting of a cell
-  /// (analysis::GateScale): "2714 rows of 2 up to 9".
+  /// (analysis::GateScale): "2714 rows of 2 up to 9". Throws StudyError that names --gate if no
+  /// factor can be found behind such a limit.
   std::string limits_of(const Gate& gate) const;
   /// A sentence on a gate that they seem to have passed: their largest NIS is far smaller than the
   /// largest of so many by the law that fits the others. Empty if there is no such sign. `sensor`

@@ -63,6 +63,9 @@ TEST_F(JudgeInnovations, BehindAGateArePutOnTheScaleWithoutOne) {
   EXPECT_GT(nis[0], 20.0) << "the largest that the gate lets pass";
   EXPECT_NEAR(nis[1], analysis::chi_squared_before_gate(1.0, 2.0, 9.0), 1e-12);
   EXPECT_EQ(nis[2], 0.0);
+  EXPECT_THAT(call({"analyze", "mine.h5", "--table", "innovations"}).out,
+              HasSubstr("as if without"))
+      << "the given NIS is not stored";
   EXPECT_THAT(called.out, ContainsRegex("innovations[ \n]+passes: i \\(9\\)"));
   EXPECT_THAT(judged({"i.csv"}, {"--innovations", "--gate", "8"}).err,
               HasSubstr("i.csv:2: a NIS of 9 is beyond --gate 8"));
@@ -72,6 +75,10 @@ TEST_F(JudgeInnovations, BehindAGateArePutOnTheScaleWithoutOne) {
   EXPECT_THAT(judged({"i.csv"}, {"--innovations", "--gate", "99.9%"}).err,
               HasSubstr("stored in mine.h5"));
   EXPECT_THAT(judged({"i.csv"}, {"--gate", "8"}).err, HasSubstr("--gate: needs --innovations"));
+  write("z.csv", "time_s,nis,nis_dof\n1,0,2\n2,0,2\n");
+  EXPECT_THAT(judged({"z.csv"}, {"--innovations", "--gate", "0.0001%"}).err,
+              HasSubstr("--gate 0.0001%: a limit of"))
+      << "and nothing is stored that is damaged";
   EXPECT_THAT(judged({"i.csv"}, {"--innovations", "--error", "world"}).err,
               HasSubstr("--error: not beside --innovations"));
 }
@@ -180,6 +187,16 @@ TEST_F(JudgeInnovations, OfSensorsWithOppositeFaultsAreBothOff) {
     EXPECT_TRUE(found.components.front().has_bias()) << cell.label;
     EXPECT_FALSE(found.judges_size()) << "the verdict on errors does";
   }
+  // Whiteness and size of two sensors are judged together; the average NEES is by itself.
+  const auto table = [&](const char* name) {
+    return call({"analyze", "mine.h5", "--table", name}).out;
+  };
+  EXPECT_THAT(table("innovations"), HasSubstr("[98.75 %]"));
+  EXPECT_THAT(table("innovations"), Not(HasSubstr("[95 %]")));
+  EXPECT_THAT(table("consistency"), HasSubstr("[95 %]"));
+  EXPECT_THAT(table("consistency"), Not(HasSubstr("[98.75 %]")));
+  ASSERT_EQ(call({"analyze", "mine.h5", "--csv", "csv"}).code, 0);
+  EXPECT_THAT(text_of("csv/families.csv"), AllOf(HasSubstr(",level"), HasSubstr(",0.9875\n")));
 }
 
 TEST_F(JudgeInnovations, WithComponentsHaveABiasAndCorrelations) {
