@@ -3,6 +3,7 @@
 // error that the user stated.
 #include "analysis/run/measured_run.hpp"
 #include "analysis/study/cell_report.hpp"
+#include "analysis/verdict/gate_scale.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -20,8 +21,11 @@ struct ComponentErrors {
   std::vector<double> deviation;  ///< {component} RMS deviation that the other program reports
 };
 
-/// Ratio of the RMS error of a component to its RMS deviation; NaN if the deviation is 0.
-double ratio_of(const ComponentErrors& found, std::size_t component) {
+/// Ratio of the RMS error of a component to its RMS deviation; NaN if the deviation is 0, and of
+/// innovations that passed a gate, where how much of one component passes depends on the others.
+double ratio_of(const CellAnalysis& cell, std::size_t component) {
+  if (cell.find<GateScale>() != nullptr) return kNaN;
+  const ComponentErrors& found = cell.get<ComponentErrors>();
   const double deviation = found.deviation[component];
   return deviation > 0.0 ? found.error[component] / deviation : kNaN;
 }
@@ -84,7 +88,7 @@ TextTable component_table(const StudyAnalysis& study) {
                  {"unit", study.imported.units[c], Align::left},
                  {"RMS error", readable(found.error[c])},
                  {"RMS sigma", readable(found.deviation[c])},
-                 {"ratio", readable(ratio_of(found, c))}});
+                 {"ratio", readable(ratio_of(cell, c))}});
     }
   }
   return table;
@@ -93,10 +97,9 @@ TextTable component_table(const StudyAnalysis& study) {
 std::vector<Section> imported_sections(const StudyAnalysis& study) {
   if (!study.imported.is_imported() || !study.has_truth) return {};
   const CellNumber largest = [](const CellAnalysis& cell) {
-    const ComponentErrors& found = cell.get<ComponentErrors>();
     double ratio = kNaN;
-    for (std::size_t c = 0; c < found.error.size(); ++c) {
-      ratio = std::fmax(ratio, ratio_of(found, c));
+    for (std::size_t c = 0; c < cell.get<ComponentErrors>().error.size(); ++c) {
+      ratio = std::fmax(ratio, ratio_of(cell, c));
     }
     return ratio;
   };

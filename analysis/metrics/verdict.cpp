@@ -59,9 +59,8 @@ class VerdictOverRuns final : public MergedSums<VerdictOverRuns> {
  private:
   void put_verdict_on_white(double level, CellAnalysis& cell) const {
     const ErrorNames names{criteria_->components, criteria_->times};
-    std::vector<FamilyTest> families = sums_->white_families(level, names);
+    std::vector<FamilyTest> families = sums_->white_families(level, names, cell.find<GateScale>());
     if (families.empty()) return;
-    if (const auto* gate = cell.find<GateScale>()) gate->put_factors(families);
     VerdictOnWhite white{cell.verdict};
     const Verdict found =
         judge(std::move(families), level, criteria_->within, cell.complete, cell.verdict.beside);

@@ -13,9 +13,8 @@ Verdict judge(const WholeError& sums, const ErrorNames& names, const InterimAnal
               std::uint64_t ended, std::uint64_t complete) {
   const double within = analysis.within;
   const auto judged = [&](double level) {
-    std::vector<FamilyTest> families = sums.families(level, names);
-    if (analysis.gate != nullptr) analysis.gate->put_factors(families);
-    return judge(std::move(families), level, within, complete, sums.beside_tests(names));
+    return judge(sums.families(level, names, analysis.gate), level, within, complete,
+                 sums.beside_tests(names));
   };
   Verdict verdict = judged(level_of_analysis(analysis.level, analysis.runs_at_analyses, ended));
   if (analysis.runs_at_analyses.size() < 2) return verdict;

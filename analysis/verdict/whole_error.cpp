@@ -73,6 +73,17 @@ MemberTest zero_test(Family family, Member member, const RunMean& mean) {
   return {family, std::move(member), [mean](double level) { return mean.interval(level); }};
 }
 
+/// Judges tests together, of errors that passed `gate` if there is one.
+std::vector<FamilyTest> judged(std::vector<MemberTest> all, double level, const GateScale* gate) {
+  if (gate == nullptr) return judge_tests(std::move(all), level);
+  std::erase_if(all, [](const MemberTest& test) {
+    return test.family == Family::component || test.family == Family::component_by_stretch;
+  });
+  std::vector<FamilyTest> families = judge_tests(std::move(all), level);
+  gate->put_factors(families);
+  return families;
+}
+
 }  // namespace
 
 WholeError::WholeError(std::size_t dimension, std::size_t scans)
@@ -312,14 +323,14 @@ void WholeError::add_largest_test(const ErrorNames& names, std::vector<MemberTes
   all.push_back({Family::tails, std::move(member), [](double) { return Interval{kNaN, kNaN}; }});
 }
 
-std::vector<FamilyTest> WholeError::families(double level, const ErrorNames& names) const {
+std::vector<FamilyTest> WholeError::families(double level, const ErrorNames& names,
+                                             const GateScale* gate) const {
   if (nees_.ratios().n < kFewestJudgedRuns) {
     std::vector<MemberTest> all = nees_.scan_tests(names.times);
     std::ranges::move(along_.tests(names.components), std::back_inserter(all));
-    return judge_tests(std::move(all), level);
+    return judged(std::move(all), level, gate);
   }
-  std::vector<MemberTest> all = tests_over_runs(names);
-  return judge_tests(std::move(all), level);
+  return judged(tests_over_runs(names), level, gate);
 }
 
 /// The tests of three runs and more.
@@ -347,7 +358,8 @@ std::vector<MemberTest> WholeError::tests_over_runs(const ErrorNames& names) con
   return all;
 }
 
-std::vector<FamilyTest> WholeError::white_families(double level, const ErrorNames& names) const {
+std::vector<FamilyTest> WholeError::white_families(double level, const ErrorNames& names,
+                                                   const GateScale* gate) const {
   if (!has_drives()) return {};
   std::vector<MemberTest> all =
       nees_.ratios().n < kFewestJudgedRuns ? nees_.scan_tests(names.times) : tests_over_runs(names);
@@ -360,7 +372,7 @@ std::vector<FamilyTest> WholeError::white_families(double level, const ErrorName
     members.push_back(in_stretch("", k, names));
   }
   std::ranges::move(along_.white_tests(names.components, ends_, members), std::back_inserter(all));
-  return judge_tests(std::move(all), level);
+  return judged(std::move(all), level, gate);
 }
 
 /// Puts the tests along the drives in place of those of size and components, if the errors of all

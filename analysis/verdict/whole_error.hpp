@@ -5,6 +5,7 @@
 #include "analysis/statistics/spread.hpp"
 #include "analysis/verdict/along_drive.hpp"
 #include "analysis/verdict/bets.hpp"
+#include "analysis/verdict/gate_scale.hpp"
 #include "analysis/verdict/run_groups.hpp"
 #include "analysis/verdict/summed_error.hpp"
 #include "analysis/verdict/worst_direction.hpp"
@@ -60,11 +61,15 @@ class WholeError {
   /// The families that apply, judged together at `level`. Size and components of fewer than
   /// kFewestRunsOfAPlan runs are judged along the drives if errors forget fast; fewer than
   /// kFewestJudgedRuns runs have no other families but the scans.
-  std::vector<FamilyTest> families(double level, const ErrorNames& names) const;
+  /// Behind a `gate` ratios are factors, and single components have no tests of their squares: how
+  /// much of one passes depends on the others (STATISTICS (9.4)).
+  std::vector<FamilyTest> families(double level, const ErrorNames& names,
+                                   const GateScale* gate = nullptr) const;
   /// The families of fewer than kFewestRunsOfAPlan runs whose errors are white, as innovations of a
   /// consistent filter are: size, components and stretches are judged by the law of such errors.
   /// Empty if there are more runs.
-  std::vector<FamilyTest> white_families(double level, const ErrorNames& names) const;
+  std::vector<FamilyTest> white_families(double level, const ErrorNames& names,
+                                         const GateScale* gate = nullptr) const;
   /// The side of the margin on which bets on the ratios of runs refuse the filter (STATISTICS 18).
   std::optional<Side> refused_by_bets(double margin, double level) const;
   /// Findings that are in no test.

@@ -67,6 +67,7 @@ TEST(GateScale, AgreesWithTheLikelihoodOfWhatPassed) {
 struct GatedStudy {
   std::size_t runs, scans, dimension;
   double limit, factor;
+  double factor_of_first = factor;  ///< of the first component
 
   Verdict verdict(std::uint64_t seed, const GateScale& scale, double level) const {
     WholeError sums(dimension, scans);
@@ -78,9 +79,9 @@ struct GatedStudy {
       for (std::size_t s = 0; s < scans; ++s) {
         double squared = 0.0;
         std::vector<double> one(dimension);
-        for (double& z : one) {
-          z = std::sqrt(factor) * draw.normal();
-          squared += z * z;
+        for (std::size_t k = 0; k < dimension; ++k) {
+          one[k] = std::sqrt(k == 0 ? factor_of_first : factor) * draw.normal();
+          squared += one[k] * one[k];
         }
         if (squared > limit) continue;
         nis[s] = chi_squared_before_gate(squared, static_cast<double>(dimension), limit);
@@ -93,12 +94,29 @@ struct GatedStudy {
     const std::vector<double> times = scan_times(scans);
     const std::vector<std::string> names = letters(dimension);
     const ErrorNames all{names, times};
-    auto families = sums.white_families(level, all);
-    if (families.empty()) families = sums.families(level, all);
-    scale.put_factors(families);
+    auto families = sums.white_families(level, all, &scale);
+    if (families.empty()) families = sums.families(level, all, &scale);
     return judge(std::move(families), level, kUsualMargin, runs, sums.beside_tests(all));
   }
 };
+
+// The gate lets pass less of the right component where the other one is too large, and more where
+// it is too small.
+TEST(GateScale, AccusesNoRightComponentBesideAWrongOne) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const GatedStudy large{400, 60, 2, 9.0, 1.0, 9.0}, small{400, 60, 2, 4.0, 1.0, 0.05};
+    const Verdict above = large.verdict(seed, GateScale({{1.0, 2.0, 9.0}}), 0.95);
+    EXPECT_EQ(above.answer, Answer::optimistic) << seed;
+    EXPECT_GT(above.ratio().lower, 1.5) << "one factor of both";
+    const Verdict below = small.verdict(seed, GateScale({{1.0, 2.0, 4.0}}), 0.95);
+    EXPECT_EQ(below.answer, Answer::conservative) << seed;
+    EXPECT_LT(below.ratio().upper, 0.7);
+  }
+  const Verdict one =
+      GatedStudy{1, 1000, 2, 9.0, 1.0}.verdict(1, GateScale({{1.0, 2.0, 9.0}}), 0.95);
+  EXPECT_NE(one.find(Family::size), nullptr);
+  EXPECT_EQ(one.find(Family::component), nullptr) << "also of one white drive";
+}
 
 TEST(SlowGateScale, HoldsTheFactorAndSparesARightFilter) {
   const std::uint64_t studies = studies_of_a_line(100);

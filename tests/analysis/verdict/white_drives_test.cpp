@@ -63,7 +63,7 @@ struct FewDrives {
     const std::vector<std::string> names = letters(1);
     const std::vector<double> times = scan_times(scans);
     const ErrorNames all{names, times};
-    return judge((found.sums.*families)(kLevel, all), kLevel, within, runs,
+    return judge((found.sums.*families)(kLevel, all, nullptr), kLevel, within, runs,
                  found.sums.beside_tests(all));
   }
 };
