@@ -100,20 +100,22 @@ struct GatedStudy {
   }
 };
 
-// The gate lets pass less of the right component where the other one is too large.
+// The gate lets pass less of the right component where the other one is too large, and more where
+// it is too small.
 TEST(GateScale, AccusesNoRightComponentBesideAWrongOne) {
-  const GateScale scale({{1.0, 2.0, 9.0}});
-  for (const auto& [runs, scans] : {std::pair<std::size_t, std::size_t>{60, 60}, {1, 1000}}) {
-    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-      const GatedStudy study{runs, scans, 2, 9.0, 1.0, 9.0};
-      const Verdict found = study.verdict(seed, scale, 0.95);
-      EXPECT_EQ(found.answer, Answer::optimistic) << runs << " runs, seed " << seed;
-      EXPECT_GT(found.ratio().lower, 1.5) << "one factor of both";
-      EXPECT_LT(found.ratio().upper, 9.0);
-      EXPECT_EQ(found.find(Family::component), nullptr);
-      EXPECT_EQ(found.find(Family::component_by_stretch), nullptr);
-    }
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const GatedStudy large{400, 60, 2, 9.0, 1.0, 9.0}, small{400, 60, 2, 4.0, 1.0, 0.05};
+    const Verdict above = large.verdict(seed, GateScale({{1.0, 2.0, 9.0}}), 0.95);
+    EXPECT_EQ(above.answer, Answer::optimistic) << seed;
+    EXPECT_GT(above.ratio().lower, 1.5) << "one factor of both";
+    const Verdict below = small.verdict(seed, GateScale({{1.0, 2.0, 4.0}}), 0.95);
+    EXPECT_EQ(below.answer, Answer::conservative) << seed;
+    EXPECT_LT(below.ratio().upper, 0.7);
   }
+  const Verdict one =
+      GatedStudy{1, 1000, 2, 9.0, 1.0}.verdict(1, GateScale({{1.0, 2.0, 9.0}}), 0.95);
+  EXPECT_NE(one.find(Family::size), nullptr);
+  EXPECT_EQ(one.find(Family::component), nullptr) << "also of one white drive";
 }
 
 TEST(SlowGateScale, HoldsTheFactorAndSparesARightFilter) {
