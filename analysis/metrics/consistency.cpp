@@ -168,7 +168,7 @@ Figure nees_figure(const StudyAnalysis& study, const std::vector<ErrorBlock>& bl
 Figure anees_figure(const StudyAnalysis& study) {
   const Values whole = {{"whole", study.imported.name_of_whole()}};
   Values curve = whole;
-  const bool is_of_innovations = study.imported.state == kInnovationsAlone;
+  const bool is_of_innovations = study.imported.are_innovations();
   curve.emplace_back("nees", is_of_innovations ? "NIS" : "NEES");
   curve.emplace_back("level", level_text(study.level));
   const bool is_bound = has_bounded_cells(study);

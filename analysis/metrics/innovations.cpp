@@ -215,7 +215,7 @@ std::string correlated_words(const Innovations& found, const std::vector<std::st
 /// Makes a sentence for each cell, where innovations are all that can be judged.
 std::vector<Section::Block> leads_of(const StudyAnalysis& study) {
   std::vector<Section::Block> leads;
-  const bool are_judged = study.imported.state == kInnovationsAlone || !study.has_truth;
+  const bool are_judged = study.imported.are_innovations() || !study.has_truth;
   if (!are_judged || !study.references.empty()) return leads;
   for (const CellAnalysis& cell : study.cells) {
     const Innovations* found = cell.find<Innovations>();
@@ -246,7 +246,7 @@ std::vector<Section> innovations_sections(const StudyAnalysis& study) {
   for (Section& section : sections) {
     const std::vector<Section::Block> leads = leads_of(study);
     section.blocks.insert(section.blocks.begin(), leads.begin(), leads.end());
-    if (study.imported.state == kInnovationsAlone) {
+    if (study.imported.are_innovations()) {
       section.shown = Section::Shown::open;
       if (!study.has_truth) section.add_html("<p>" + no_truth_sentence(study) + "</p>\n");
     }

@@ -73,8 +73,8 @@ DriveCriteria criteria_of_drive(const RunDrive& drive, const Eigen::Matrix3d& st
 void add_imported(const ResultFile& file, const ImportedState& imported, RunCriteria& criteria) {
   criteria.components = imported.components;
   criteria.units = imported.units;
-  criteria.has_own_scans = imported.state == kInnovationsAlone || !imported.windows.empty();
-  if (imported.state == kInnovationsAlone) {
+  criteria.has_own_scans = imported.are_innovations() || !imported.windows.empty();
+  if (imported.are_innovations()) {
     criteria.innovation_components = imported.components.size();
     criteria.tests_together = 2 * sensors_of(file);
   }

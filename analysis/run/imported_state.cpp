@@ -19,28 +19,24 @@ std::vector<std::string> words_in(const std::string& list) {
   return words;
 }
 
-std::string value_of(const TextPairs& settings, const char* name) {
+}  // namespace
+
+std::string setting_of(const TextPairs& settings, const char* name) {
   const auto pair = std::ranges::find(settings, name, &TextPairs::value_type::first);
   return pair == settings.end() ? std::string() : pair->second;
 }
 
-}  // namespace
-
-std::string setting_of(const StoredCell& cell, const char* name) {
-  return value_of(cell.settings, name);
-}
-
 bool has_bounds(const TextPairs& settings) {
-  return !value_of(settings, "pair").empty() || value_of(settings, "increments") == "bounded" ||
-         value_of(settings, "anchored") == "bounded";
+  return !setting_of(settings, "pair").empty() || setting_of(settings, "increments") == "bounded" ||
+         setting_of(settings, "anchored") == "bounded";
 }
 
 const char* ImportedState::name_of_ratio() const {
-  return state == kInnovationsAlone ? "NIS ratio" : "NEES ratio";
+  return are_innovations() ? "NIS ratio" : "NEES ratio";
 }
 
 std::string ImportedState::name_of_whole() const {
-  if (state == kInnovationsAlone) return "innovation";
+  if (are_innovations()) return "innovation";
   if (!pair.empty()) return "difference";
   if (!windows.empty()) return "increment";
   return state == "vector" ? "state" : "pose";
@@ -48,7 +44,7 @@ std::string ImportedState::name_of_whole() const {
 
 ImportedState imported_state(const StoredCell& cell) {
   ImportedState found;
-  const auto setting = [&](const char* name) { return setting_of(cell, name); };
+  const auto setting = [&](const char* name) { return setting_of(cell.settings, name); };
   if (setting("state") == kInnovationsAlone) found.state = kInnovationsAlone;
   if (!cell.has("error")) {
     if (found.is_imported()) found.components = found.units = {};
@@ -92,7 +88,7 @@ std::vector<StateBlock> blocks_of(std::span<const std::string> components,
 
 std::size_t sensors_of(const ResultFile& file) {
   std::set<std::string> sensors;
-  for (const StoredCell& cell : file.cells()) sensors.insert(setting_of(cell, "sensor"));
+  for (const StoredCell& cell : file.cells()) sensors.insert(setting_of(cell.settings, "sensor"));
   sensors.erase("");
   return std::max<std::size_t>(sensors.size(), 1);
 }

@@ -33,6 +33,7 @@ struct ImportedState {
   std::vector<std::string> units = {"m", "m", "rad"};
 
   bool is_imported() const { return !state.empty(); }
+  bool are_innovations() const { return state == kInnovationsAlone; }
   /// Name of the whole whose error is judged: "pose", "state", "innovation", ...
   std::string name_of_whole() const;
   /// Name of the ratio of squared errors to the expected ones: "NEES ratio", or "NIS ratio".
@@ -50,8 +51,8 @@ struct StateBlock {
 std::vector<StateBlock> blocks_of(std::span<const std::string> components,
                                   std::span<const std::string> units);
 
-/// The value of a setting of a cell; empty if it has none of this name.
-std::string setting_of(const StoredCell& cell, const char* name);
+/// The value of a setting; empty if there is none of this name.
+std::string setting_of(const TextPairs& settings, const char* name);
 
 /// Whether the covariances of a cell with these settings are only bounds from above: those of
 /// pairs, of increments of corrected estimates, and of errors moved onto uncertain first estimates.

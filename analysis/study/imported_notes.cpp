@@ -30,8 +30,6 @@ std::string sentence_on(const std::string& state, const std::string& convention)
                            : "estimate minus truth in the frame of the map";
 }
 
-using Setting = std::pair<std::string, std::string>;
-
 std::vector<std::string> notes_on_innovations(const StudyAnalysis& study) {
   std::vector<std::string> notes;
   if (study.has_truth && !study.cells.empty()) {
@@ -42,9 +40,9 @@ std::vector<std::string> notes_on_innovations(const StudyAnalysis& study) {
   }
   std::string gates;
   for (const CellAnalysis& cell : study.cells) {
-    const auto gate = std::ranges::find(cell.settings, "gate", &Setting::first);
-    if (gate == cell.settings.end() || cell.find<GateScale>() == nullptr) continue;
-    gates += (gates.empty() ? "" : ", ") + cell.label + " (" + gate->second + ")";
+    if (cell.find<GateScale>() == nullptr) continue;
+    gates +=
+        (gates.empty() ? "" : ", ") + cell.label + " (" + setting_of(cell.settings, "gate") + ")";
   }
   if (!gates.empty()) notes.push_back(prose("innovations", "gate", {{"gates", gates}}));
   return notes;
@@ -97,7 +95,7 @@ std::string components_text(const StudyAnalysis& study) {
 }
 
 std::vector<std::string> imported_notes(const StudyAnalysis& study) {
-  if (study.imported.state == kInnovationsAlone) return notes_on_innovations(study);
+  if (study.imported.are_innovations()) return notes_on_innovations(study);
   if (!study.imported.is_imported()) return {};
   const std::string& convention = study.imported.convention;
   std::vector<std::string> notes = {

@@ -79,7 +79,7 @@ std::vector<std::size_t> complete_runs(const ResultFile& file, const StoredCell&
 /// The scale of the gate that the innovations of a cell passed; nullopt if there was none. Throws
 /// StudyError if its limits are damaged.
 std::optional<GateScale> gate_of(const ResultFile& file, const StoredCell& cell) {
-  const std::string limits = setting_of(cell, "gate_limits");
+  const std::string limits = setting_of(cell.settings, "gate_limits");
   auto gate = gate_scale_of(limits);
   if (gate || limits.empty()) return gate;
   throw StudyError(

@@ -48,15 +48,7 @@ std::optional<ErrorBlock> judged_block(const Score& score) {
 std::string name_in_tables(const Score& score) {
   const auto block = judged_block(score);
   if (!block) return score.name;
-  switch (*block) {
-    case ErrorBlock::pose:
-      return "NEES ratio";
-    case ErrorBlock::position:
-      return "position NEES ratio";
-    case ErrorBlock::heading:
-      return "heading NEES ratio";
-  }
-  return score.name;
+  return *block == ErrorBlock::pose ? "NEES ratio" : name_of(*block) + " NEES ratio";
 }
 
 double expectation_of(const Score& score, const CellAnalysis& cell) {

@@ -127,7 +127,7 @@ Frame::Row numbers_of(const CellAnalysis& cell, const NeesResult& nees, double l
 }
 
 std::string ratio_heading(const StudyAnalysis& study) {
-  const bool is_of_innovations = study.imported.state == kInnovationsAlone && !study.cells.empty();
+  const bool is_of_innovations = study.imported.are_innovations() && !study.cells.empty();
   const double level = is_of_innovations ? study.cells.front().verdict.level : study.level;
   return ratio_heading(study, level);
 }
@@ -251,7 +251,7 @@ TextTable failure_table(const StudyAnalysis& study) {
 
 std::string ratio_note(const StudyAnalysis& study) {
   const double each = study.cells.empty() ? study.level : study.cells.front().verdict.level;
-  if (study.imported.state == kInnovationsAlone) {
+  if (study.imported.are_innovations()) {
     return prose("verdict", "ratio of innovations",
                  {{"components", components_text(study)},
                   {"each", level_text(each)},

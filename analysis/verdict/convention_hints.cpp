@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace montecarta::analysis {
 namespace {
@@ -21,8 +20,6 @@ std::string comma_joined(const std::vector<std::string>& parts) {
   for (const std::string& part : parts) all += (all.empty() ? "" : ", ") + part;
   return all;
 }
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// {scan} NEES of errors whose covariances are corrected.
 template <class Correct>
@@ -53,10 +50,9 @@ std::string mistakes_in_words(const ConventionHint& hint) {
          ", by which they would not have been rejected";
 }
 
-/// A clause on the rejected conventions whose NEES ratio is nearer to 1 than the stated one by a
-/// factor of ten or more; empty without any.
+/// A clause on the rejected conventions whose NEES ratio is far nearer to 1 than the stated one;
+/// empty without any.
 std::string far_nearer_in_words(const ConventionHint& hint, const std::string& said) {
-  constexpr double kFactor = 10.0;
   const auto distance = [&](std::size_t k) {
     return std::abs(std::log(hint.by_convention[k].ratio_estimate()));
   };
@@ -67,7 +63,7 @@ std::string far_nearer_in_words(const ConventionHint& hint, const std::string& s
   for (std::size_t k = 0; k < hint.by_convention.size(); ++k) {
     const Verdict& found = hint.by_convention[k];
     if (found.answer == Answer::untested || fits_errors(found)) continue;
-    if (distance(k) <= distance(stated) - std::log(kFactor))
+    if (distance(k) <= distance(stated) - std::log(kFarNearer))
       nearer.emplace_back(kErrorConventions[k].name);
   }
   if (nearer.empty()) return "";
@@ -81,23 +77,11 @@ std::string far_nearer_in_words(const ConventionHint& hint, const std::string& s
 NeesBy<kTestedMistakes.size()> nees_by_mistake(const ErrorRows& errors,
                                                std::span<const std::string> units) {
   NeesBy<kTestedMistakes.size()> nees;
-  const auto angles = static_cast<std::size_t>(std::ranges::count(units, "rad"));
-  if (units.size() != errors.components() || angles == 0) return nees;
-  const std::vector<Eigen::Index> order = rotation_first_order(units);
-  if (are_positions_then_angles(units)) {
-    nees[0] = nees_with(errors,
-                        [&](const Eigen::MatrixXd& P) { return Eigen::MatrixXd(P(order, order)); });
-  }
-  Eigen::VectorXd scale = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(units.size()));
-  for (std::size_t i = 0; i < units.size(); ++i) {
-    if (units[i] == "rad") scale(static_cast<Eigen::Index>(i)) = kDegree;
-  }
-  const Eigen::VectorXd from_rad = scale.cwiseInverse();
-  for (const std::size_t mistake : {std::size_t{1}, std::size_t{2}}) {
-    const Eigen::VectorXd& by = mistake == 1 ? scale : from_rad;
-    nees[mistake] = nees_with(errors, [&](const Eigen::MatrixXd& P) {
-      return Eigen::MatrixXd(by.asDiagonal() * P * by.asDiagonal());
-    });
+  if (units.size() != errors.components()) return nees;
+  for (std::size_t k = 0; k < nees.size(); ++k) {
+    const LayoutCorrection correction = correction_of(kTestedMistakes[k], units);
+    if (correction.from.empty()) continue;
+    nees[k] = nees_with(errors, [&](const Eigen::MatrixXd& P) { return correction.covariance(P); });
   }
   return nees;
 }

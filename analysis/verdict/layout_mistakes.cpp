@@ -18,41 +18,36 @@ constexpr std::array<const char*, kLayoutMistakes> kNamesOfMistakes = {
     "angles in rad where those of estimates and truths are in degrees", "lengths in mm",
     "standard deviations in place of variances"};
 
-/// How the variance of a component follows from those that are stated.
-struct Correction {
-  std::vector<Eigen::Index> from;  ///< {component} the one whose place it has; empty: no part
-  std::vector<double> factor;      ///< {component}
-  bool is_squared = false;
+/// Returns whether components are all positions [m], then angles [rad].
+bool are_positions_then_angles(std::span<const std::string> units) {
+  const auto first_angle = std::ranges::find(units, "rad");
+  return first_angle != units.begin() && first_angle != units.end() &&
+         std::all_of(units.begin(), first_angle, [](const auto& unit) { return unit == "m"; }) &&
+         std::all_of(first_angle, units.end(), [](const auto& unit) { return unit == "rad"; });
+}
 
-  double variance(const double* covariance, std::size_t i) const {
-    const auto k = static_cast<std::size_t>(from[i]);
-    const double stated = covariance[k * from.size() + k];
-    return factor[i] * (is_squared ? stated * stated : stated);
-  }
-};
-
-/// {as stated, then without each mistake} for components with these units.
-std::array<Correction, 1 + kLayoutMistakes> corrections_of(std::span<const std::string> units) {
-  constexpr double kDegreeInRad = std::numbers::pi / 180.0, kMillimetre = 1e-3;
-  Correction stated{.from = std::vector<Eigen::Index>(units.size()),
-                    .factor = std::vector<double>(units.size(), 1.0)};
+LayoutCorrection as_stated(std::span<const std::string> units) {
+  LayoutCorrection stated{.from = std::vector<Eigen::Index>(units.size()),
+                          .scale = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(units.size()))};
   std::iota(stated.from.begin(), stated.from.end(), Eigen::Index{0});
-  const auto scaled = [&](const char* unit, double factor) {
-    Correction found = stated;
-    for (std::size_t i = 0; i < units.size(); ++i)
-      if (units[i] == unit) found.factor[i] = factor * factor;
-    return found;
-  };
-  Correction rotation_first = stated, deviations = stated;
-  rotation_first.from =
-      are_positions_then_angles(units) ? rotation_first_order(units) : std::vector<Eigen::Index>();
-  deviations.is_squared = true;
-  return {stated,
-          rotation_first,
-          scaled("rad", kDegreeInRad),
-          scaled("rad", 1.0 / kDegreeInRad),
-          scaled("m", kMillimetre),
-          deviations};
+  return stated;
+}
+
+/// Deviations in `unit` are `factor` times the stated numbers.
+LayoutCorrection scaled(std::span<const std::string> units, const char* unit, double factor) {
+  if (std::ranges::find(units, unit) == units.end()) return {};
+  LayoutCorrection found = as_stated(units);
+  for (std::size_t i = 0; i < units.size(); ++i)
+    if (units[i] == unit) found.scale(static_cast<Eigen::Index>(i)) = factor;
+  return found;
+}
+
+/// Positions have the places behind the rotation.
+LayoutCorrection rotation_first(std::span<const std::string> units) {
+  if (!are_positions_then_angles(units)) return {};
+  LayoutCorrection found = as_stated(units);
+  std::ranges::rotate(found.from, found.from.begin() + std::ranges::count(units, "rad"));
+  return found;
 }
 
 }  // namespace
@@ -61,19 +56,29 @@ std::string name_of(LayoutMistake mistake) {
   return kNamesOfMistakes.at(static_cast<std::size_t>(mistake));
 }
 
-bool are_positions_then_angles(std::span<const std::string> units) {
-  const auto first_angle = std::ranges::find(units, "rad");
-  return first_angle != units.begin() && first_angle != units.end() &&
-         std::all_of(units.begin(), first_angle, [](const auto& unit) { return unit == "m"; }) &&
-         std::all_of(first_angle, units.end(), [](const auto& unit) { return unit == "rad"; });
+double LayoutCorrection::variance(const double* stated, std::size_t i) const {
+  const auto k = static_cast<std::size_t>(from[i]);
+  const double of_place = stated[k * from.size() + k], s = scale(static_cast<Eigen::Index>(i));
+  return s * s * (is_squared ? of_place * of_place : of_place);
 }
 
-std::vector<Eigen::Index> rotation_first_order(std::span<const std::string> units) {
-  const auto angles = static_cast<std::size_t>(std::ranges::count(units, "rad"));
-  std::vector<Eigen::Index> order(units.size());
-  for (std::size_t i = 0; i < order.size(); ++i)
-    order[i] = static_cast<Eigen::Index>((i + angles) % order.size());
-  return order;
+LayoutCorrection correction_of(LayoutMistake mistake, std::span<const std::string> units) {
+  constexpr double kDegree = std::numbers::pi / 180.0, kMillimetre = 1e-3;
+  switch (mistake) {
+    case LayoutMistake::rotation_first:
+      return rotation_first(units);
+    case LayoutMistake::degrees:
+      return scaled(units, "rad", kDegree);
+    case LayoutMistake::radians:
+      return scaled(units, "rad", 1.0 / kDegree);
+    case LayoutMistake::millimetres:
+      return scaled(units, "m", kMillimetre);
+    case LayoutMistake::deviations:
+      break;
+  }
+  LayoutCorrection deviations = as_stated(units);
+  deviations.is_squared = true;
+  return deviations;
 }
 
 double PartRatios::distance() const {
@@ -88,7 +93,9 @@ bool PartRatios::has_same_parts(const PartRatios& other) const {
 void LayoutMistakes::add(const ErrorRows& errors, std::span<const std::string> units) {
   const std::size_t d = units.size();
   if (d != errors.components()) return;
-  const auto corrections = corrections_of(units);
+  std::vector<LayoutCorrection> corrections = {as_stated(units)};
+  for (std::size_t k = 0; k < kLayoutMistakes; ++k)
+    corrections.push_back(correction_of(static_cast<LayoutMistake>(k), units));
   for (std::size_t s = 0; s < errors.scans(); ++s) {
     const double* const covariance = errors.covariance.data() + s * d * d;
     for (std::size_t i = 0; i < d; ++i) {
@@ -119,8 +126,8 @@ std::optional<LayoutMistake> LayoutMistakes::far_nearer() const {
     const double distance = std::abs(std::log(ratio));
     return distance > std::log(kNear) && distance > std::abs(std::log(stated));
   };
-  constexpr double kFactor = 10.0;  // nearer by it, and not farther than it
-  double least = std::min(stated().distance() - std::log(kFactor), std::log(kFactor));
+  const double far = std::log(kFarNearer);
+  double least = std::min(stated().distance() - far, far);
   std::optional<LayoutMistake> nearest;
   for (std::size_t k = 0; k < kLayoutMistakes; ++k) {
     const auto mistake = static_cast<LayoutMistake>(k);

@@ -4,8 +4,11 @@
 #include "analysis/run/run_rows.hpp"
 #include "analysis/statistics/sums.hpp"
 
+#include <Eigen/Core>
+
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -27,10 +30,24 @@ inline constexpr std::size_t kLayoutMistakes = 5;
 /// "rotation before position", "angles in degrees", ...
 std::string name_of(LayoutMistake mistake);
 
-/// Returns whether components are all positions [m], then angles [rad].
-bool are_positions_then_angles(std::span<const std::string> units);
-/// {component} The component whose place in the covariance this one has, if the rotation is first.
-std::vector<Eigen::Index> rotation_first_order(std::span<const std::string> units);
+/// A corrected ratio that is nearer to 1 by this factor or more is far nearer.
+inline constexpr double kFarNearer = 10.0;
+
+/// How the covariance of errors follows from the one that is stated.
+struct LayoutCorrection {
+  /// {component} the component whose place it has; empty if such a mistake is not possible.
+  std::vector<Eigen::Index> from;
+  Eigen::VectorXd scale;    ///< {component} factor of its deviation
+  bool is_squared = false;  ///< whether the diagonal has deviations; covariance() does not apply
+
+  Eigen::MatrixXd covariance(const Eigen::MatrixXd& stated) const {
+    return scale.asDiagonal() * stated(from, from) * scale.asDiagonal();
+  }
+  /// The variance of component `i` from the elements of the stated covariance.
+  double variance(const double* stated, std::size_t i) const;
+};
+/// The correction of a mistake for components with these units.
+LayoutCorrection correction_of(LayoutMistake mistake, std::span<const std::string> units);
 
 /// Squared errors over their variances, averaged over samples: 1 is right; NaN if a part has none.
 struct PartRatios {
@@ -53,8 +70,8 @@ class LayoutMistakes {
   PartRatios without(LayoutMistake mistake) const {
     return ratios(1 + static_cast<std::size_t>(mistake));
   }
-  /// The mistake without which ratios are nearest to 1, if the farther one is nearer by a factor of
-  /// ten or more and within ten, and none is farther than as stated (or than 3).
+  /// The mistake without which ratios are nearest to 1, if the farther one is far nearer and within
+  /// kFarNearer, and none is farther than as stated (or than 3).
   std::optional<LayoutMistake> far_nearer() const;
   static constexpr auto parts() { return std::tuple(added(&LayoutMistakes::sums_)); }
 

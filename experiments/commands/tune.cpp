@@ -81,9 +81,7 @@ TuningScore score_to_tune_by(const Itinerary& itinerary, const Arguments& argume
   }
   if (*by != "reference" && *by != "innovations") {
     throw StudyError(
-        "--by {}: no such score (a recorded drive has two): give reference or "
-        "innovations",
-        *by);
+        "--by {}: no such score (a recorded drive has two): give reference or innovations", *by);
   }
   if (itinerary.has_truth) {
     throw StudyError(

@@ -37,22 +37,28 @@ def from_triangle(values, triangle):
     return P
 
 
+def triangle_of(values, options, path, declared=""):
+    """The triangle of 21 numbers per row, "upper" or "lower", and whether only it gives
+    covariances, as nothing else says which it is."""
+    triangle = declared or options.triangle
+    if triangle:
+        return triangle, False
+    fits = [one for one in ("upper", "lower")
+            if np.all(is_semidefinite(from_triangle(values, one)))]
+    if len(fits) != 1:
+        raise ConversionError(f"{path}: 21 numbers of a covariance ({len(fits)} of 2 triangles "
+                              "give a covariance in every row): say --triangle upper or "
+                              "--triangle lower")
+    return fits[0], True
+
+
 def whole_covariances(values, options, path, declared=""):
     """Covariances {row, 6, 6} of 36 or 21 numbers per row, and how the 21 were taken."""
     if values.shape[1] == 36:
         return values.reshape(-1, 6, 6), "36 numbers are the covariance row by row"
-    triangle = declared or options.triangle
-    if not triangle:
-        fits = [one for one in ("upper", "lower")
-                if np.all(is_semidefinite(from_triangle(values, one)))]
-        if len(fits) != 1:
-            raise ConversionError(f"{path}: 21 numbers of a covariance ({len(fits)} of 2 triangles "
-                                  "give a covariance in every row): say --triangle upper or "
-                                  "--triangle lower")
-        triangle = fits[0]
-        return (from_triangle(values, triangle),
-                f"21 numbers are the {triangle} triangle, since the other gives no covariance")
-    return from_triangle(values, triangle), f"21 numbers are the {triangle} triangle"
+    triangle, is_guessed = triangle_of(values, options, path, declared)
+    why = ", since the other gives no covariance" if is_guessed else ""
+    return from_triangle(values, triangle), f"21 numbers are the {triangle} triangle{why}"
 
 
 # ---- the order of position and rotation
@@ -167,11 +173,10 @@ def numbered_elements(table, columns, options):
     """The elements of columns in the order of their numbers."""
     if len(columns) == 36:
         return [(divmod(n, 6), k) for n, k in enumerate(columns)]
-    is_upper = True
+    triangle = "upper"
     if table.rows:
-        _, how = whole_covariances(table.numbers(columns), options, table.header_place)
-        is_upper = "the upper triangle" in how
-    places = np.triu_indices(6) if is_upper else np.tril_indices(6)
+        triangle, _ = triangle_of(table.numbers(columns), options, table.header_place)
+    places = np.triu_indices(6) if triangle == "upper" else np.tril_indices(6)
     return [((int(i), int(j)), k) for i, j, k in zip(*places, columns)]
 
 

@@ -154,8 +154,7 @@ ErrorConvention stated_error(const StateShape& shape, const std::filesystem::pat
     throw StudyError(
         "judge: --error is missing (the verdict depends on the error that the covariance "
         "describes): give --error world, body, right-invariant, left-invariant or, in space, "
-        "world-body, which "
-        "montecarta judge --help explains");
+        "world-body, which montecarta judge --help explains");
   }
   if (std::ranges::find(known, *said) != known.end()) return *said;
   if (known.size() > 1) return ErrorConvention::world;  // in the plane, world-body is world

@@ -276,8 +276,7 @@ JudgedFiles pair_files(const std::vector<std::string>& estimates,
   }
   const std::string remedy =
       "estimators are paired by run: judge the same runs of all, or give --cell NAME if all are "
-      "runs "
-      "of one estimator";
+      "runs of one estimator";
   for (const auto& [label, of_run] : cells) {
     require_same_runs(first, of_run, "estimate in cell " + label, remedy);
     require_same_runs(of_run, first, "estimate in cell " + cells.begin()->first, remedy);
@@ -325,8 +324,7 @@ std::string note_on_names(const JudgedFiles& files) {
   if (shown < files.names.size()) names += ", ... to " + files.names.back();
   return formatted(
       "the names of the runs are no consecutive numbers ({}): in this order, the runs are called "
-      "{} "
-      "to {}",
+      "{} to {}",
       names, files.runs.front(), files.runs.back());
 }
 

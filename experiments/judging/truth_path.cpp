@@ -202,8 +202,7 @@ std::string TruthUse::note_on_bend(const std::string& other) const {
   return formatted(
       "the {} bends by {} m between its rows (root mean square; {} m are claimed for positions): "
       "straight lines between them err so much, and this counts as the estimate's error: give it "
-      "at "
-      "the times of the estimates, or more densely",
+      "at the times of the estimates, or more densely",
       other, compact(std::sqrt(bend_squares / n)), compact(std::sqrt(claimed_squares / n)));
 }
 

@@ -160,8 +160,7 @@ void refuse_strange_reference(const ReferenceHalf& half, const RunRows& estimate
   if (!are_far_larger(half, estimates, ErrorBlock::heading)) return;
   throw StudyError(
       "{}: the headings of reference {} are {} deg from the estimate (the median; no noise "
-      "explains "
-      "that): give radians, counter-clockwise from the x axis, or leave the headings out",
+      "explains that): give radians, counter-clockwise from the x axis, or leave the headings out",
       place, fixes.name(), readable(median_of(turns) * 180.0 / std::numbers::pi));
 }
 

@@ -247,7 +247,7 @@ std::string studied_sentence(const StudyAnalysis& study) {
   const std::string runs = std::to_string(study.runs_here);
   const std::string time = fixed_seconds(study.duration);
   const std::string judged = "; its errors are compared with the covariance that it reports.";
-  if (study.imported.state == kInnovationsAlone) {
+  if (study.imported.are_innovations()) {
     return "The innovations of another program in " + runs + (runs == "1" ? " run" : " runs") +
            " of " + time + " are compared with the covariance that it reports.";
   }

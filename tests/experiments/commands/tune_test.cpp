@@ -115,6 +115,15 @@ void expect_holds(const PrintedFactor& factor, double truth) {
   EXPECT_LT(half_width, 0.3);
 }
 
+/// Expects that a row of a command's table has these factors on the noise of motion and sensor.
+void expect_factors(const Called& called, double motion, double sensor, const char* row = "all") {
+  ASSERT_EQ(called.code, 0) << called.err;
+  const auto factors = factors_in(called.out, row);
+  ASSERT_EQ(factors.size(), 2U) << called.out;
+  expect_holds(factors[0], motion);
+  expect_holds(factors[1], sensor);
+}
+
 class Tune : public Program {
  protected:
   /// Exports a drive of the ring, without its truth, and writes the study of it.
@@ -146,22 +155,12 @@ TEST_F(Tune, FindsTheFactorsOfWrongNoiseOnMotionAndSensor) {
                               "belief.sigma_range=0.14", "belief.sigma_bearing_deg=1.4"});
   ASSERT_EQ(called.code, 0) << called.err;
   EXPECT_THAT(called.out, testing::StartsWith("ekf_slam should assume "));
-  for (const char* row : {"1", "3", "10", "all"}) {
-    const auto factors = factors_in(called.out, row);
-    ASSERT_EQ(factors.size(), 2U) << called.out;
-    expect_holds(factors[0], 2.0);
-    expect_holds(factors[1], 1.0 / 1.4);
-  }
+  for (const char* row : {"1", "3", "10", "all"}) expect_factors(called, 2.0, 1.0 / 1.4, row);
   EXPECT_THAT(called.out, HasSubstr("ekf_slam_tuned"));
   EXPECT_THAT(called.out, HasSubstr("60 fresh runs"));
 }
 
-TEST_F(Tune, FindsOneWhereTheNoiseIsRight) {
-  const auto factors = factors_in(tune({}).out, "all");
-  ASSERT_EQ(factors.size(), 2U);
-  expect_holds(factors[0], 1.0);
-  expect_holds(factors[1], 1.0);
-}
+TEST_F(Tune, FindsOneWhereTheNoiseIsRight) { expect_factors(tune({}), 1.0, 1.0); }
 
 /// The value of an option in "Write motion_noise=2.057 sensor_noise=1.028".
 double written(const std::string& output, const std::string& option) {
@@ -211,11 +210,7 @@ TEST_F(Tune, WritesTheLandscapeAndTheConfirmingStudy) {
 TEST_F(Tune, TakesADriveWithoutTruthByItsInnovations) {
   record_drive();
   const Called called = call({"tune", "log.ini"});
-  ASSERT_EQ(called.code, 0) << called.err;
-  const auto factors = factors_in(called.out, "all");
-  ASSERT_EQ(factors.size(), 2U) << called.out;
-  expect_holds(factors[0], 1.0);
-  expect_holds(factors[1], 2.0);
+  expect_factors(called, 1.0, 2.0);
   EXPECT_THAT(called.out, HasSubstr("innovations of the second half"));
   const std::string of_map = "map = known\nstart_sigma_m = 0.1\nstart_sigma_deg = 1\n";
   write("log.ini", std::string(kTunedLog).erase(kTunedLog.find(of_map), of_map.size()));
@@ -228,11 +223,7 @@ TEST_F(Tune, TakesADriveByItsErrorsAgainstAReference) {
   give_reference();
   const Called called = call({"tune", "log.ini", "--set", "belief.sigma_speed=0.05", "--set",
                               "belief.sigma_steer_deg=0.5"});
-  ASSERT_EQ(called.code, 0) << called.err;
-  const auto factors = factors_in(called.out, "all");
-  ASSERT_EQ(factors.size(), 2U) << called.out;
-  expect_holds(factors[0], 2.0);
-  expect_holds(factors[1], 2.0);
+  expect_factors(called, 2.0, 2.0);
   EXPECT_THAT(called.out, HasSubstr("errors at the fixes of reference in the first"));
   EXPECT_THAT(called.out, HasSubstr("errors against reference in the second"));
   EXPECT_THAT(call({"tune", "log.ini", "--by", "innovations"}).out,
