@@ -46,7 +46,8 @@ LayoutCorrection scaled(std::span<const std::string> units, const char* unit, do
 LayoutCorrection rotation_first(std::span<const std::string> units) {
   if (!are_positions_then_angles(units)) return {};
   LayoutCorrection found = as_stated(units);
-  std::ranges::rotate(found.from, found.from.begin() + std::ranges::count(units, "rad"));
+  std::rotate(found.from.begin(), found.from.begin() + std::ranges::count(units, "rad"),
+              found.from.end());
   return found;
 }
 
