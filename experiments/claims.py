@@ -10,6 +10,7 @@ per line, as the .printed files have (printed.py):
     title = Ankishan et al. 2016
     page = ankishan2016_sim1       # its comparisons, of the .printed file, are claims, too
     compare = "position RMSE" a < b page=PAGE where="4" says="a beats b"
+    stated = "drive is of ([0-9]+) s" 1500 2100 page=PAGE where="4" says="it takes 30 min"
     settings = speed=3 srcd.particles=30 study=ankishan2016_sim1 where="4.1"
     open = where="4.1" says="a beats b" needs="a study of a and b"
     never = where="1" says="a is simple" because="simplicity has no unit"
@@ -17,11 +18,12 @@ per line, as the .printed files have (printed.py):
 
 `compare` takes the answer from a column of a table of results/PAGE.md, for what printed.py has not
 compared: the first number of each cell with its 95 % interval, or with the standard error behind
-+-. The right side may be a number, or FACTOR*LABEL. It is decided where the intervals do not
-overlap. `settings` are what the paper prints, with the names of the study file; those of a cell
-begin with its label. `open` is not measured yet, and `never` cannot be measured. `headline` is
-named in the first sentences if it is contradicted; its second word is the name of a comparison in
-the tables.
++-, or the median behind a mean of a heavy tail. The right side may be a number, FACTOR*LABEL, or
+LABEL@PAGE, a cell of another page. It is decided where the intervals do not overlap. `stated` is
+confirmed if the number in a sentence of the page lies between two, which the paper rounds.
+`settings` are what the paper prints, with the names of the study file; those of a cell begin with
+its label. `open` is not measured yet, and `never` cannot be measured. `headline` is named in the
+first sentences if it is contradicted; its second word is the name of a comparison in the tables.
 """
 import argparse
 import glob
@@ -64,6 +66,14 @@ def compare_of(text):
     return fields | dict(zip(("column", "left", "relation", "right"), words))
 
 
+def stated_of(text):
+    words = shlex.split(text)
+    if len(words) < 3:
+        raise ValueError('write stated = "WORDS ([0-9]+)" LEAST MOST page=... where=... says=...')
+    return (fields_of(words[3:], ["page", "where", "says"], []) |
+            {"words": re.compile(words[0]), "ends": tuple(map(float, words[1:3]))})
+
+
 def settings_of(text):
     words = shlex.split(text)
     own = [word for word in words if word.partition("=")[0] in ("study", "where")]
@@ -90,8 +100,8 @@ def headline_of(text):
 
 def read_claims(path):
     """The statements of a .claims file as a dictionary by key. Raises PrintedError."""
-    parsers = {"title": str, "page": str, "compare": compare_of, "settings": settings_of,
-               "open": open_of, "never": never_of, "headline": headline_of}
+    parsers = {"title": str, "page": str, "compare": compare_of, "stated": stated_of,
+               "settings": settings_of, "open": open_of, "never": never_of, "headline": headline_of}
     claims = printed.read_statements(path, parsers, set(parsers) - {"title"})
     if claims["title"] is None:
         raise PrintedError(f"{path}: title = ... is missing: add it")
@@ -110,8 +120,9 @@ def content_of(path, what):
 
 
 def number_of(text, runs):
-    """(mean, lower, upper) of "m [l, u]" or of "m +- standard error", else None."""
-    found = re.match(r"(\S+) \[([^,]+), ([^]]+)\]$", text)
+    """(mean, lower, upper) of "m [l, u]", of "..., median m [l, u]" or of "m +- standard error",
+    else None."""
+    found = re.search(r"(?:^|, median )(\S+) \[([^,]+), ([^]]+)\]$", text)
     if found:
         return tuple(map(float, found.groups()))
     found = re.match(r"(\S+) \+- (\S+)", text)
@@ -128,6 +139,7 @@ class Page:
     def __init__(self, folder, name):
         self.path = os.path.join(folder, "results", f"{name}.md")
         text = content_of(self.path, "the page")
+        self.text = text
         runs = re.search(r": (\d+) of \d+ runs", text)
         self.runs = int(runs[1]) if runs else 0
         self.study = "".join(re.findall(r"^Study: .*/studies/(\w+)\.ini\)", text, re.M))
@@ -262,6 +274,7 @@ class Ledger:
         for paper in self.papers:
             paper["rows"] = [row for page in paper["page"] for row in self.printed_rows(page)]
             paper["rows"] += map(self.compared, paper["compare"])
+            paper["rows"] += map(self.stated, paper["stated"])
             paper["rows"] += map(self.opened, paper["open"])
             paper["rows"] += [row_of(each["says"], each["where"], "-", NEVER,
                                      rest=f", because {each['because']}")
@@ -319,12 +332,23 @@ class Ledger:
         if side["number"]:
             right, against = [float(side["number"])] * 3, ""
         else:
-            right = [float(side["factor"] or 1) * end
-                     for end in page.number(claim["column"], side["label"])]
+            label, _, other = side["label"].partition("@")
+            right = [float(side["factor"] or 1) * end for end in
+                     (self.page(other) if other else page).number(claim["column"], label)]
             against = " against " + of_numbers(right)
         name = f"{claim['column']}: {claim['left']} {claim['relation']} {claim['right']}"
         return row_of(f"{claim['says']}; {name}", claim["where"], of_numbers(left) + against,
                       decided(claim["relation"], left, right), page=claim["page"], name=name)
+
+    def stated(self, claim):
+        page = self.page(claim["page"])
+        found = claim["words"].search(" ".join(page.text.split()))
+        if not found:
+            raise PrintedError(f"{page.path}: no sentence has '{claim['words'].pattern}': correct "
+                               "it, or publish the page again")
+        least, most = claim["ends"]
+        answer = CONFIRMED if least <= float(found[1]) <= most else CONTRADICTED
+        return row_of(claim["says"], claim["where"], found[1], answer, page=claim["page"])
 
     def opened(self, claim):
         if "study" in claim:

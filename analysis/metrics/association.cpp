@@ -2,6 +2,7 @@
 // Counts of the associations of detections (AssociationCounts), summed over the scans of a run.
 #include "analysis/run/measured_run.hpp"
 #include "analysis/study/cell_report.hpp"
+#include "analysis/study/verdict_table.hpp"
 
 #include <cmath>
 
@@ -38,7 +39,7 @@ double wrong_share(const CellAnalysis& cell) {
   return cell.over_runs("association_wrong").mean / detections_of(cell);
 }
 
-std::vector<TextTable::Entry> association_row(const CellAnalysis& cell) {
+std::vector<TextTable::Entry> association_row(const CellAnalysis& cell, double level) {
   const double all = detections_of(cell);
   if (std::isnan(all)) return {};
   const auto share = [&](const char* score) { return percent(cell.over_runs(score).mean / all); };
@@ -47,13 +48,16 @@ std::vector<TextTable::Entry> association_row(const CellAnalysis& cell) {
           {"wrong", share("association_wrong")},
           {"new again", share("association_new_again")},
           {"left out", share("association_missed")},
-          {"false accepted", readable(cell.over_runs("association_clutter").mean)}};
+          {"false accepted", readable(cell.over_runs("association_clutter").mean)},
+          {"wrong in a run [" + level_text(level) + "]",
+           score_text(cell, "association_wrong", level).text()}};
 }
 
 std::vector<Section> association_sections(const StudyAnalysis& study) {
   return table_section(
       section_of("association", {{"wrong", range_over_cells(study, wrong_share, percent)}}),
-      cell_table(study, association_row));
+      cell_table(study,
+                 [&](const CellAnalysis& cell) { return association_row(cell, study.level); }));
 }
 
 }  // namespace

@@ -115,6 +115,7 @@ void add_facts_of_drives(const StudyAnalysis& study, std::vector<std::string>& f
 std::vector<std::string> drive_facts(const StudyAnalysis& study) {
   std::vector<std::string> facts;
   if (study.has_truth || study.imported.is_imported()) return facts;
+  if (!study.odometry.empty()) add("odometry", {{"way", study.odometry}}, facts);
   add_cells_without_landmark(study, facts);
   add_fixes_in_gaps(study, facts);
   add_headings_of_odometry(study, facts);

@@ -191,6 +191,9 @@ StudyAnalysis begin(const ResultFile& file, double level, std::optional<double> 
   study.has_truth = file.has_errors();
   study.rows_are_scans = file.times().size() == file.scan_times().size();
   study.own_drives = file.description().drives.size();
+  const auto odometry =
+      std::ranges::find(file.scenario(), engine::kOdometryFact, &TextPairs::value_type::first);
+  if (odometry != file.scenario().end()) study.odometry = odometry->second;
   if (!file.cells().empty()) study.imported = imported_state(file.cells().front());
   if (study.imported.is_imported()) study.study_runs = study.runs_here;  // numbers may start at 1
   study.beacons = file.landmarks().size();

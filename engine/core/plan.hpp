@@ -58,6 +58,9 @@ struct ImportedError {
   bool has_pose = false;  ///< the estimate is a pose in the plane, and stored as well
 };
 
+/// Fact of the scenario of a recorded drive: its time and way by the odometry, in words.
+inline constexpr const char* kOdometryFact = "odometry";
+
 /// One filter in one setting, repeated in runs; one curve of a figure.
 struct Cell {
   std::string label;  ///< label, unique in the study, of the settings that differ: "fastslam2_m100"

@@ -164,6 +164,26 @@ std::vector<std::pair<std::string, std::string>> scenario_facts(const Settings& 
   return facts;
 }
 
+/// What the odometry of recorded drives says of their time and way: "1549 s and 3901 m".
+std::string odometry_in_words(const Settings& settings, const DriveSource& drives) {
+  const Vehicle vehicle = vehicle_of(settings, "belief");
+  const std::uint64_t number = std::max<std::uint64_t>(drives.own_drives(), 1);
+  double seconds = 0.0, metres = 0.0;
+  Drive drive;
+  for (std::uint64_t run = 0; run < number; ++run) {
+    const Itinerary& itinerary = drives.itinerary_of(run);
+    drives.generate(run, drive);
+    for (std::size_t k = 0; k < drive.controls.size(); ++k) {
+      const BodyStep<double> step =
+          models::body_step(vehicle, drive.controls[k], itinerary.duration(k));
+      metres += length(step.forward, step.left);
+    }
+    seconds += drive.controls.empty() ? 0.0 : itinerary.step_time[drive.controls.size() - 1];
+  }
+  return formatted("{} s and {} m{}", std::llround(seconds), std::llround(metres),
+                   number == 1 ? "" : formatted(" in {} drives", number));
+}
+
 /// Throws StudyError if a column is to be stored to which there is an objection.
 void refuse_column(const Study& study, const std::string& column, const std::string& objection) {
   if (objection.empty()) return;
@@ -352,6 +372,8 @@ StudyPlan make_plan(const Study& study, std::optional<RunRange> range, ExternalP
   refuse_judging_from(study, plan.drives->itinerary());
   plan.own_landmarks = own_landmarks_of(study, plan.seed);
   plan.scenario = scenario_facts(settings);
+  if (settings.scenario_kind() != "simulated")
+    plan.scenario.emplace_back(kOdometryFact, odometry_in_words(settings, *plan.drives));
   plan.resolved_text = resolved_text(study);
   return plan;
 }

@@ -142,6 +142,25 @@ class Claims(unittest.TestCase):
             with self.assertRaisesRegex(printed.PrintedError, piece):
                 self.ledger(**{end: (old, new)})
 
+    def test_compares_with_a_cell_of_another_page_and_by_medians(self):
+        line = 'compare = "wrong" a < 1.5*a@s page=s where="6" says="alike"\n'
+        table = "| cell | wrong |\n|---|---:|\n| a | 9 (heavy tail), median {} |\n\nStudy:"
+        for median, answer in (("3.0 \\[2.5, 3.5\\]", "confirmed"),
+                               ("3.0 \\[2.0, 4.0\\]", "undecided")):
+            answers = self.answers(claims=("headline", line + "headline"),
+                                   md=("Study:", table.format(median)))
+            self.assertEqual(answers["alike; wrong: a < 1.5*a@s"], answer)
+
+    def test_takes_a_number_from_a_sentence(self):
+        line = 'stated = "is of ([0-9]+) s" 1500 2100 page=s where="6" says="long"\n'
+        for sentence, answer in (("The drive\nis of 1549 s.", "confirmed"),
+                                 ("The drive is of 149 s.", "contradicted")):
+            answers = self.answers(claims=("headline", line + "headline"),
+                                   md=("Study:", sentence + "\n\nStudy:"))
+            self.assertEqual(answers["long"], answer)
+        with self.assertRaisesRegex(printed.PrintedError, "no sentence has 'is of"):
+            self.answers(claims=("headline", line + "headline"))
+
     def test_refuses_a_comparison_on_a_page_that_is_no_claim(self):
         for end, old, piece in (
                 ("printed", "claim = position_rmse a < two_m10 note=\"Fig. 1\"\n", "is no claim"),
@@ -153,7 +172,8 @@ class Claims(unittest.TestCase):
 
     def test_refuses_a_line_that_it_does_not_understand(self):
         for line in ("quote = 3", "title = again", "compare = \"x\" a ~ b page=s where=1 says=x",
-                     "compare = \"x\" a < b page=s", "settings = study=s where=1", "open = where=1",
+                     "compare = \"x\" a < b page=s", "stated = x page=s",
+                     "settings = study=s where=1", "open = where=1",
                      "never = where=1 says=x needs=y", "headline = s says=x"):
             with self.assertRaisesRegex(printed.PrintedError, "paper.claims:2: "):
                 self.ledger(claims=("title = A paper\n", f"title = A paper\n{line}\n"))
