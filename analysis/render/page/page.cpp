@@ -11,6 +11,7 @@
 #include "engine/text/wrapped_text.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <fstream>
 #include <iterator>
 #include <string_view>
@@ -231,17 +232,6 @@ std::string markdown_table(const TextTable& table) {
   return hidden == 0 ? markdown : markdown + "\n... and " + std::to_string(hidden) + " rows more\n";
 }
 
-std::string markdown_page(const StudyAnalysis& study, const std::vector<Section>& sections,
-                          const TextPairs& provenance) {
-  std::string page = "# " + markdown_escape(study.title.empty() ? study.study_name : study.title) +
-                     "\n" + markdown_leading_figure(sections);
-  for (const std::string& fact : drive_facts(study)) page += "\n" + markdown_escape(fact) + "\n";
-  for (const Section& section : sections) {
-    if (section.is_for_terminal) page += markdown_section(section);
-  }
-  return page + study_lines(study, provenance);
-}
-
 std::string studied_sentence(const StudyAnalysis& study) {
   const std::string n = std::to_string(study.cells.size());
   const std::string runs = std::to_string(study.runs_here);
@@ -263,6 +253,41 @@ std::string studied_sentence(const StudyAnalysis& study) {
   }
   if (study.own_drives > 0) return cells + runs + " recorded drives of up to " + time + ".";
   return cells + "one recorded drive of " + time + ", " + runs + " times.";
+}
+
+/// Which cells have which answer: "Optimistic: ekf_slam, ukf_slam (NEES ratio 1.2 to 1.9)."
+std::string found_sentences(const StudyAnalysis& study) {
+  std::string text;
+  for (const Answer answer : {Answer::consistent, Answer::optimistic, Answer::conservative,
+                              Answer::inconsistent, Answer::undecided}) {
+    std::string cells;
+    std::vector<double> ratios;
+    for (const CellAnalysis& cell : study.cells) {
+      if (cell.verdict.answer != answer) continue;
+      cells += (cells.empty() ? "" : ", ") + cell.label;
+      ratios.push_back(cell.verdict.ratio_estimate());
+    }
+    if (cells.empty()) continue;
+    const auto [least, most] = std::ranges::minmax(ratios);
+    std::string name = name_of(answer);
+    name.front() = static_cast<char>(std::toupper(name.front()));
+    text += " " + name + ": " + cells + " (NEES ratio " + compact(least) +
+            (ratios.size() == 1 ? "" : " to " + compact(most)) + ").";
+  }
+  return text;
+}
+
+std::string markdown_page(const StudyAnalysis& study, const std::vector<Section>& sections,
+                          const TextPairs& provenance) {
+  std::string page =
+      "# " + markdown_escape(study.title.empty() ? study.study_name : study.title) + "\n\n" +
+      markdown_escape(studied_sentence(study) + (study.has_truth ? found_sentences(study) : "")) +
+      "\n" + markdown_leading_figure(sections);
+  for (const std::string& fact : drive_facts(study)) page += "\n" + markdown_escape(fact) + "\n";
+  for (const Section& section : sections) {
+    if (section.is_for_terminal) page += markdown_section(section);
+  }
+  return page + study_lines(study, provenance);
 }
 
 Section title_section(const StudyAnalysis& study) {
