@@ -18,9 +18,9 @@ per line, as the .printed files have (printed.py):
 
 `compare` takes the answer from a column of a table of results/PAGE.md, for what printed.py has not
 compared: the first number of each cell with its 95 % interval, or with the standard error behind
-+-, or the median behind a mean of a heavy tail. The right side may be a number, FACTOR*LABEL, or
-LABEL@PAGE, a cell of another page. It is decided where the intervals do not overlap. `stated` is
-confirmed if the number in a sentence of the page lies between two, which the paper rounds.
++-. The right side may be a number, FACTOR*LABEL, or LABEL@PAGE, a cell of another page. It is
+decided where the intervals do not overlap. `stated` is confirmed if the number in a sentence of the
+page lies between two, which the paper rounds.
 `settings` are what the paper prints, with the names of the study file; those of a cell begin with
 its label. `open` is not measured yet, and `never` cannot be measured. `headline` is named in the
 first sentences if it is contradicted; its second word is the name of a comparison in the tables.
@@ -120,9 +120,8 @@ def content_of(path, what):
 
 
 def number_of(text, runs):
-    """(mean, lower, upper) of "m [l, u]", of "..., median m [l, u]" or of "m +- standard error",
-    else None."""
-    found = re.search(r"(?:^|, median )(\S+) \[([^,]+), ([^]]+)\]$", text)
+    """(mean, lower, upper) of "m [l, u]" or of "m +- standard error", else None."""
+    found = re.match(r"(\S+) \[([^,]+), ([^]]+)\]$", text)
     if found:
         return tuple(map(float, found.groups()))
     found = re.match(r"(\S+) \+- (\S+)", text)

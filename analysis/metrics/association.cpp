@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Counts of the associations of detections (AssociationCounts), summed over the scans of a run.
 #include "analysis/run/measured_run.hpp"
+#include "analysis/statistics/spread.hpp"
 #include "analysis/study/cell_report.hpp"
-#include "analysis/study/verdict_table.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace montecarta::analysis {
@@ -42,6 +43,8 @@ double wrong_share(const CellAnalysis& cell) {
 std::vector<TextTable::Entry> association_row(const CellAnalysis& cell, double level) {
   const double all = detections_of(cell);
   if (std::isnan(all)) return {};
+  std::vector<double> wrong = cell.scores.column("association_wrong");
+  std::ranges::sort(wrong);
   const auto share = [&](const char* score) { return percent(cell.over_runs(score).mean / all); };
   return {{"detections", readable(all, 4)},
           {"correct", share("association_correct")},
@@ -49,8 +52,8 @@ std::vector<TextTable::Entry> association_row(const CellAnalysis& cell, double l
           {"new again", share("association_new_again")},
           {"left out", share("association_missed")},
           {"false accepted", readable(cell.over_runs("association_clutter").mean)},
-          {"wrong in a run [" + level_text(level) + "]",
-           score_text(cell, "association_wrong", level).text()}};
+          {"wrong in the middle run [" + level_text(level) + "]",
+           with_interval(median_of(wrong), median_interval(wrong, level))}};
 }
 
 std::vector<Section> association_sections(const StudyAnalysis& study) {
