@@ -364,13 +364,19 @@ std::vector<std::string> comparison_sentences(const Comparisons& comparisons) {
   return sentences;
 }
 
+std::string pairs_of_all_rows(const Comparisons& comparisons) {
+  if (comparisons.rows.empty()) return "";
+  const std::string first = pairs_text(comparisons.rows.front());
+  const bool are_alike = std::ranges::all_of(
+      comparisons.rows, [&](const CellComparison& row) { return pairs_text(row) == first; });
+  return are_alike ? first : "";
+}
+
 TextTable difference_table(const Comparisons& comparisons) {
   TextTable table{.keys = 2};
   const std::string heading_of_difference =
       formatted("difference [{}]", level_text(comparisons.level));
-  const bool are_all_paired = std::ranges::none_of(comparisons.rows, [](const auto& row) {
-    return row.without + row.baseline_without + row.neither + row.unpaired > 0;
-  });
+  const bool have_own_pairs = pairs_of_all_rows(comparisons).empty();
   for (const CellComparison& row : comparisons.rows) {
     const double difference = row.difference / row.expectation;
     std::vector<TextTable::Entry> entries = {
@@ -381,7 +387,7 @@ TextTable difference_table(const Comparisons& comparisons) {
                                     : with_interval(difference, shown_interval(row))},
         {"ratio", readable(row.ratio)},
         {"runs won", percent(row.wins.share())}};
-    if (!are_all_paired) entries.push_back({"runs", pairs_text(row), Align::left});
+    if (have_own_pairs) entries.push_back({"runs", pairs_text(row), Align::left});
     table.add(entries);
   }
   return table;
@@ -413,6 +419,8 @@ std::vector<std::string> difference_notes(const StudyAnalysis& study,
   std::vector<std::string> notes =
       paragraphs("comparison", "differences",
                  {{"baseline", comparisons.baseline}, {"level", level_text(comparisons.level)}});
+  const std::string pairs = pairs_of_all_rows(comparisons);
+  if (!pairs.empty()) notes.push_back(prose("comparison", "pairs", {{"pairs", pairs}}));
   add_failures(study, notes);
   return notes;
 }

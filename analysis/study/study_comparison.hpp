@@ -114,6 +114,10 @@ std::vector<std::string> comparison_sentences(const Comparisons& comparisons);
 /// A table with one row for each cell and score: the difference from the baseline with its
 /// interval. A NEES is shown as the NEES ratio.
 TextTable difference_table(const Comparisons& comparisons);
+
+/// The number of paired runs, and the reasons why others are not paired, if it is the same in all
+/// rows: "64, 1936 unpaired". Else difference_table() has it, and this is empty.
+std::string pairs_of_all_rows(const Comparisons& comparisons);
 /// The table of the same rows with the tests of each difference.
 TextTable comparison_table(const Comparisons& comparisons);
 /// A table with one row and one column for each cell: the share of runs in which the row beats the

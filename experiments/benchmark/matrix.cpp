@@ -160,19 +160,25 @@ std::string legend_text(const Matrix& matrix) {
 }
 
 TextTable world_table(const Matrix& matrix, std::size_t world) {
+  const bool has_smoother = std::ranges::any_of(matrix.rows, [&](const Matrix::Row& row) {
+    return std::isfinite(row.places[world].relative_error);
+  });
   TextTable table;
   for (const Matrix::Row& row : matrix.rows) {
     const auto& [entry, suits, relative] = row.places[world];
     if (entry == nullptr) continue;
-    table.add({{"filter", row.label, Align::left},
-               {"verdict", words_of(entry->verdict), Align::left},
-               {formatted("NEES ratio [{}]", level_text(entry->verdict.level)),
-                with_interval(entry->verdict.ratio, entry->verdict.interval)},
-               {"RMSE [m]", readable(entry->position_rmse())},
-               {"of the smoother's", readable(relative)},
-               {"CPU/run [ms]", readable(1e3 * entry->cpu_seconds, 2)},
-               {"runs", std::to_string(entry->runs)},
-               {"failed", std::to_string(entry->failed)}});
+    std::vector<TextTable::Entry> entries = {
+        {"filter", row.label, Align::left},
+        {"verdict", words_of(entry->verdict), Align::left},
+        {formatted("NEES ratio [{}]", level_text(entry->verdict.level)),
+         with_interval(entry->verdict.ratio, entry->verdict.interval)},
+        {"RMSE [m]", readable(entry->position_rmse())},
+        {"CPU/run [ms]", readable(1e3 * entry->cpu_seconds, 2)},
+        {"runs", entry->failed == 0 ? std::to_string(entry->runs)
+                                    : formatted("{}, {} FAILED", entry->runs, entry->failed)}};
+    if (has_smoother)
+      entries.insert(entries.begin() + 4, {"of the smoother's", readable(relative)});
+    table.add(entries);
   }
   return table;
 }

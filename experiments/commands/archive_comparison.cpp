@@ -103,6 +103,8 @@ void print_differences_from(const StudyAnalysis& study, const std::string& mine,
   std::cout << '\n'
             << wrapped(formatted("Archived filters against yours, {}:", mine), output_width());
   print_table(std::cout, difference_table(comparisons), output_width());
+  const std::string pairs = analysis::pairs_of_all_rows(comparisons);
+  if (!pairs.empty()) std::cout << "\nRuns in each comparison: " << pairs << ".\n";
 }
 
 }  // namespace

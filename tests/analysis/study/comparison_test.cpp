@@ -116,7 +116,7 @@ TEST(CompareCells, CountsFailuresAsLostAndLeavesThemOutOfDifferences) {
   EXPECT_NEAR(row.wins.share(), 1.0 / 12.0, 1e-15);
   EXPECT_EQ(row.verdict(0.95), "worse");  // although its one complete run is the better one
   EXPECT_TRUE(std::isnan(row.interval.lower));
-  EXPECT_EQ(difference_table(found).rows.at(0).back(), "1, 11 lost by failure");
+  EXPECT_EQ(pairs_of_all_rows(found), "1, 11 lost by failure");
 }
 
 TEST(CompareCells, GivesNoRatioOfAScoreWithoutANaturalZero) {
@@ -186,7 +186,7 @@ TEST(CompareCells, CountsNoFailureWhereNeitherSideIsBetter) {
   EXPECT_EQ(row.wins.won, 1u);
   EXPECT_EQ(row.wins.lost, 0u);
   EXPECT_EQ(row.verdict(0.95), "undecided");
-  EXPECT_EQ(difference_table(found).rows.at(0).back(), "1, 11 failed");
+  EXPECT_EQ(pairs_of_all_rows(found), "1, 11 failed");
 }
 
 TEST(CompareCells, ShowsTheNeesAsItsRatioToTheExpectedOne) {
@@ -278,6 +278,11 @@ TEST(CompareCells, SayInOneSentenceWhatIsDecidedAndWhatIsNot) {
                           "twin against base: undecided: position_rmse, NEES ratio."));
   EXPECT_THAT(difference_table(found).rows[0],
               ElementsAre("position_rmse [m]", "bold", "0.00", "1.00", "0.0 %"));
+  EXPECT_EQ(pairs_of_all_rows(found), "20");
+  Comparisons other = found;
+  other.rows.back().unpaired = 3;
+  EXPECT_EQ(pairs_of_all_rows(other), "");
+  EXPECT_EQ(difference_table(other).rows.back().back(), "20, 3 unpaired");
 }
 
 // Two cells without difference, in nine of ten studies at least no false word at 10 %.
