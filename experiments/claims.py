@@ -430,10 +430,11 @@ def print_ledger(ledger):
     unpublished = ledger.count(NOT_YET, rest=PUBLISH)
     again = (f" ({unpublished} of them need no new study, only that a page is published again)"
              if unpublished else "")
+    open_ones = ledger.count(NOT_YET)
     print_text(
         f"Of {len(ledger.rows)} claims, {ledger.count(CONFIRMED)} are confirmed, "
         f"{ledger.count(CONTRADICTED)} contradicted, {ledger.count(UNDECIDED)} undecided, "
-        f"{ledger.count(NOT_YET)} not measured yet{again}, and "
+        + (f"{open_ones} not measured yet{again}, " if open_ones else "") + "and "
         f"{ledger.count(NEVER)} cannot be measured. Of those confirmed, "
         f"{ledger.count(CONFIRMED, is_number=True)} are printed numbers, which says little: the "
         "number of a single run is confirmed if it lies among our runs, which differ much. "

@@ -38,14 +38,13 @@ class Paper(unittest.TestCase):
             self.assertIn(f"{middle} \\[{low}, {high}\\]", pages)
 
     def test_counts_of_claims_stand_in_the_ledger(self):
-        counts = re.findall(r"Of (\d+) claims[^(]*?(\d+) are confirmed, (\d+) contradicted, "
-                            r"(\d+) undecided, (\d+) not measured yet, and (\d+) cannot",
+        counts = re.findall(r"Of (\d+) claims[^(]*?(\d+ are confirmed, \d+ contradicted, "
+                            r"\d+ undecided, (?:\d+ not measured yet, )?and \d+ cannot)",
                             self.results)
         ledger = " ".join((RESULTS / "claims.md").read_text().split())
         ledger = re.sub(r" \([^)]*published again\)", "", ledger)  # a remark among the counts
         self.assertEqual(len(counts), 1)
-        self.assertIn("Of {} claims, {} are confirmed, {} contradicted, {} undecided, {} not "
-                      "measured yet, and {} cannot".format(*counts[0]), ledger)
+        self.assertIn("Of {} claims, {}".format(*counts[0]), ledger)
 
     def test_references_and_figures_are_there(self):
         keys = set(re.findall(r"@([a-z]+\w*)", self.text))
