@@ -60,7 +60,7 @@ struct TuningResult {
   /// Whether detections are matched by a gate, so that the score jumps where a match changes.
   bool has_gate = false;
   std::size_t parts = 0;  ///< number of parts of the data that count as independent
-  /// Of a reference: the number of fixes that are scored, of gross outliers among them, and of
+  /// If a reference scores the noise: the number of its fixes, of gross outliers among them, and of
   /// independent samples that the errors at the fixes are worth.
   std::size_t fixes = 0, outliers = 0;
   double effective = 0.0;
@@ -90,7 +90,8 @@ struct TuningConfirmation {
   /// runs, at the last scan, and at all scans of a run together; infinite if too many runs failed;
   /// NaN without a truth.
   double covering_at_end = 0.0, covering_path = 0.0;
-  /// Of a reference: the number of fixes judged, and of independent samples that they are worth.
+  /// If a reference judges the noise: the number of its fixes, and of independent samples that they
+  /// are worth.
   std::size_t fixes = 0;
   double effective = 0.0;
 };

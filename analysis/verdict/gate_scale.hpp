@@ -13,7 +13,7 @@ namespace montecarta::analysis {
 /// Rows of innovations that passed a limit of their NIS.
 struct GatedRows {
   double count = 0.0;
-  double components = 0.0;  ///< of each row
+  double components = 0.0;  ///< number of components of each row
   double limit = 0.0;       ///< largest NIS
 
   static constexpr double kLeastLimit = 1e-3, kMostLimit = 1e6, kMostComponents = 1e4;

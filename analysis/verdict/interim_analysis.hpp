@@ -19,7 +19,7 @@ struct InterimAnalysis {
   std::vector<std::uint64_t> runs_at_analyses = {};
   /// Share of the study's runs that are judged: less than 1 in a shard.
   double share_of_runs = 1.0;
-  const GateScale* gate = nullptr;  ///< of the gate that innovations passed; nullptr if none
+  const GateScale* gate = nullptr;  ///< size of what passed a gate; nullptr if there is no gate
 };
 
 /// The verdict on the errors of `complete` of the `ended` runs of a cell. The answer "consistent"

@@ -51,7 +51,7 @@ LayoutCorrection correction_of(LayoutMistake mistake, std::span<const std::strin
 
 /// Squared errors over their variances, averaged over samples: 1 is right; NaN if a part has none.
 struct PartRatios {
-  double lengths, angles;  ///< of components in m and in rad
+  double lengths, angles;  ///< ratios of the components in m, and of those in rad
 
   /// How far the farther one is from 1: the logarithm of a factor. A part without samples does not
   /// count; NaN if neither has any.
@@ -82,7 +82,7 @@ class LayoutMistakes {
   };
   PartRatios ratios(std::size_t k) const;
 
-  /// {as stated, then without each mistake} of lengths, then of angles
+  /// {as stated, then without each mistake} sums over lengths, then over angles
   std::vector<std::array<Part, 2>> sums_ = std::vector<std::array<Part, 2>>(1 + kLayoutMistakes);
 };
 

@@ -41,7 +41,7 @@ Matrix matrix_of(const std::vector<ArchiveEntry>& entries);
 
 /// The class of a verdict as the matrix shows it.
 struct VerdictClass {
-  const char* name;    ///< for readers
+  const char* name;    ///< name for readers
   const char* mark;    ///< one character, behind a ratio
   const char* colour;  ///< of a cell, under black text
 };
