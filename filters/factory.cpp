@@ -32,6 +32,8 @@ std::vector<FilterKind> all_kinds() {
       oc_ekf_slam_kind(),
       robocentric_ekf_slam_kind(),
       ukf_slam_kind(),
+      right_ukf_slam_kind(),
+      left_ukf_slam_kind(),
       fastslam1_kind(),
       fastslam2_kind(),
       ufastslam_kind(),

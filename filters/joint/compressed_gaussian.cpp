@@ -57,7 +57,7 @@ constexpr std::size_t kDetectionsUncompressed = 5000;
 
 /// Orthonormalises the columns by Gram-Schmidt. The longest residual is always taken next.
 void Basis::span(Eigen::MatrixXd& columns, Retraction retraction) {
-  const Eigen::Index width = retraction == Retraction::invariant ? 2 : 1;
+  const Eigen::Index width = retraction == Retraction::right_invariant ? 2 : 1;
   const Eigen::Index most = std::min(width * columns.cols(), columns.rows());
   if (vectors_.rows() != columns.rows() || vectors_.cols() <= most) {
     vectors_.resize(columns.rows(), most + 1);
@@ -282,6 +282,7 @@ void CompressedGaussian::write_cross_with_far(Eigen::Index at, Columns2& column)
 
 /// Returns whether there are too many near points, or all have been near for long enough.
 bool CompressedGaussian::is_time_to_choose() const {
+  if (retraction_ == Retraction::left_invariant) return false;
   return is_suspended_ ? updates_ > kDetectionsUncompressed : near_.landmarks() > most_near_;
 }
 

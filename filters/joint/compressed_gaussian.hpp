@@ -37,7 +37,7 @@ class Basis {
 
 /// A JointGaussian in which a detection costs as much as the landmarks near the vehicle require,
 /// however large the map: the compressed filter of Guivant and Nebot (EQUATIONS (15.7)), exact for
-/// both errors. All landmarks are near in a small map, and for a while if compression does not pay
+/// every error. All landmarks are near in a small map, and for a while if compression does not pay
 /// off.
 ///
 /// Far landmarks change only through their covariances C with the pose and the near landmarks. As
@@ -46,6 +46,7 @@ class Basis {
 /// updates of z, X and Y are those of an unobserved point in a JointGaussian. So they are stored in
 /// it as additional points, stand-ins for the far landmarks, which begin with z = 0, Y = 0, W X =
 /// C. For the invariant error, W is closed under a quarter turn, and coefficients turn in pairs.
+/// For the left-invariant error all landmarks stay near, since every detection turns P.
 class CompressedGaussian {
  public:
   using ObservationStatus = JointGaussian::ObservationStatus;

@@ -209,11 +209,14 @@ void JointBelief::update_with(std::size_t k, const Detection& detection) {
   }
   const ObservationPoint turning = rotation_point(slot);
   used_detections_.push_back({k, expected.innovation(detected), expected.factor.covariance()});
+  const double heading = system_.gaussian.pose().mean.heading;
   const auto status = system_.gaussian.update_with(slot, detected, iterations_, expected);
   if (status == CompressedGaussian::ObservationStatus::faulty) ++outcome_.faults;
   rotation_information_ += turned(expected, place_of(turning.pose), turning.landmark)
                                .cwiseQuotient(sigma_)
                                .squaredNorm();
+  if (retraction_ == Retraction::left_invariant)
+    system_.points.turn(wrap(system_.gaussian.pose().mean.heading - heading));
   const InnovationFactor& L = expected.factor;
   const double distance = L.whiten(expected.innovation(detected)).squaredNorm();
   outcome_.log_likelihood +=
@@ -223,7 +226,7 @@ void JointBelief::update_with(std::size_t k, const Detection& detection) {
 /// Returns the points about which the system rotates. The rotation of the invariant error is about
 /// the estimate, since its covariance is transformed after every detection.
 ObservationPoint JointBelief::rotation_point(std::size_t slot) const {
-  if (retraction_ == Retraction::invariant || !fixes_landmark(sensor_))
+  if (retraction_ == Retraction::right_invariant || !fixes_landmark(sensor_))
     return {system_.gaussian.pose().mean, system_.gaussian.mean_of(slot)};
   return linearisation_->rotation_point(system_, slot);
 }

@@ -123,6 +123,16 @@ std::unique_ptr<SlamFilter> linearised_elsewhere(const FilterSetup& setup) {
                                                            .linearisation = kLinearisation()});
 }
 
+/// Makes an unscented filter with one of the errors.
+template <Retraction kRetraction>
+std::unique_ptr<SlamFilter> make_ukf(const FilterSetup& setup) {
+  return std::make_unique<JointFilter>(setup,
+                                       JointFilterSettings{.retraction = kRetraction,
+                                                           .motion = motion_of(setup.options),
+                                                           .moments = moments_of(setup.options),
+                                                           .linearisation = by_sigma_points()});
+}
+
 std::unique_ptr<SlamFilter> make_robocentric(const FilterSetup& setup) {
   return std::make_unique<JointFilter>(setup,
                                        JointFilterSettings{.motion = motion_of(setup.options),
@@ -165,6 +175,14 @@ FilterKind one_gaussian_kind(const char* name, const char* long_name, const char
   return kind;
 }
 
+FilterKind unscented_kind(const char* name, const char* long_name, const char* source,
+                          std::unique_ptr<SlamFilter> make(const FilterSetup&)) {
+  FilterKind kind =
+      joint_kind(name, long_name, source, {fitting_motion_option(), moments_option("map")}, make);
+  kind.takes_prior = kind.takes_fixes = true;
+  return kind;
+}
+
 }  // namespace
 
 std::unique_ptr<SlamFilter> make_ekf_slam(const FilterSetup& setup) {
@@ -172,7 +190,7 @@ std::unique_ptr<SlamFilter> make_ekf_slam(const FilterSetup& setup) {
 }
 
 std::unique_ptr<SlamFilter> make_riekf_slam(const FilterSetup& setup) {
-  return one_gaussian(setup, Retraction::invariant);
+  return one_gaussian(setup, Retraction::right_invariant);
 }
 
 FilterKind ekf_slam_kind() {
@@ -200,11 +218,18 @@ FilterKind oc_ekf_slam_kind() {
 }
 
 FilterKind ukf_slam_kind() {
-  FilterKind kind = joint_kind(
-      "ukf_slam", "unscented Kalman filter SLAM", "Huang, Mourikis, Roumeliotis 2009",
-      {fitting_motion_option(), moments_option("map")}, linearised_elsewhere<by_sigma_points>);
-  kind.takes_prior = kind.takes_fixes = true;
-  return kind;
+  return unscented_kind("ukf_slam", "unscented Kalman filter SLAM",
+                        "Huang, Mourikis, Roumeliotis 2009", make_ukf<Retraction::additive>);
+}
+
+FilterKind right_ukf_slam_kind() {
+  return unscented_kind("right_ukf_slam", "right-invariant unscented Kalman filter SLAM",
+                        "Brossard, Barrau, Bonnabel 2020", make_ukf<Retraction::right_invariant>);
+}
+
+FilterKind left_ukf_slam_kind() {
+  return unscented_kind("left_ukf_slam", "left-invariant unscented Kalman filter SLAM",
+                        "Brossard, Barrau, Bonnabel 2020", make_ukf<Retraction::left_invariant>);
 }
 
 FilterKind robocentric_ekf_slam_kind() {

@@ -25,5 +25,9 @@ FilterKind oc_ekf_slam_kind();
 FilterKind robocentric_ekf_slam_kind();
 /// EKF-SLAM by sigma points instead of derivatives.
 FilterKind ukf_slam_kind();
+/// The same with the error of pose and map as one element of a group, in the axes of the map or of
+/// the vehicle.
+FilterKind right_ukf_slam_kind();
+FilterKind left_ukf_slam_kind();
 
 }  // namespace montecarta::filters

@@ -32,8 +32,9 @@ SigmaRule rule() { return unscented_rule(3.0, 1.0, 0.0, 0.0); }
 constexpr double kSmallest = 1e-14;
 
 /// Derivative, by (x, y, heading, landmark's x, y), of the vector to the landmark along and across
-/// the line of sight, and of the heading. Its axes make the estimate rotate with the world.
-Matrix35 line_of_sight(const Eigen::Vector2d& away) {
+/// the line of sight, and of the heading. Its axes make the estimate rotate with the world. The
+/// right-invariant error of the vector is that to the vector that turns with the heading.
+Matrix35 line_of_sight(const Eigen::Vector2d& away, Retraction retraction) {
   const double range = away.norm();
   Eigen::Vector2d ray = Eigen::Vector2d::UnitX();
   if (range > 0.0) ray = away / range;
@@ -43,7 +44,17 @@ Matrix35 line_of_sight(const Eigen::Vector2d& away) {
   T.topLeftCorner<2, 2>() = -axes;
   T.topRightCorner<2, 2>() = axes;
   T(2, 2) = 1.0;
+  if (retraction == Retraction::right_invariant) T(1, 2) = -range;
   return T;
+}
+
+/// The vector `away` between two points whose errors differ by `way` and that turn by `turn`.
+Eigen::Vector2d retracted(const Eigen::Vector2d& away, const Eigen::Vector2d& way, double turn,
+                          Retraction retraction) {
+  if (retraction == Retraction::additive) return away + way;
+  const Eigen::Vector2d moved = exponential_jacobian(turn) * way;
+  if (retraction == Retraction::left_invariant) return away + moved;
+  return rotation_by(turn) * away + moved;
 }
 
 /// Images of pairs of sigma points minus that of the centre: half their difference, and their mean.
@@ -260,7 +271,7 @@ JointGaussian::ObservationStatus JointGaussian::linearise_after(
     const Step& step, std::size_t slot, ExpectedObservation& expected) const {
   const Eigen::Index row = row_of(slot);
   Eigen::Vector2d pose_way = step.pose.head<2>(), landmark_way = step.landmark;
-  if (retraction_ == Retraction::invariant) {
+  if (retraction_ == Retraction::right_invariant) {
     const Eigen::Matrix2d V = exponential_jacobian(step.pose(2));
     pose_way = V * pose_way;
     landmark_way = V * landmark_way;
@@ -276,7 +287,8 @@ JointGaussian::ObservationStatus JointGaussian::linearise_after(
                            .factor = {},
                            .ahead = {},
                            .wraps = wraps_};
-  if (retraction_ == Retraction::invariant) {  // the error belongs to the estimate before the step
+  if (retraction_ ==
+      Retraction::right_invariant) {  // the error belongs to the estimate before the step
     next.pose_jacobian.col(2) += next.pose_jacobian.leftCols<2>() * quarter_turned(pose_way) +
                                  next.landmark_jacobian * quarter_turned(landmark_way);
   }
@@ -346,7 +358,8 @@ void JointGaussian::condition(const Eigen::Vector2d& white) {
     map_.cross.col(j).head(rows()) -= first * gain_pose_(j, 0) + second * gain_pose_(j, 1);
   }
   const Eigen::Vector2d pose_step = step(white);
-  change_map(retraction_ == Retraction::invariant && carry_error(pose_step));
+  change_map(retraction_ == Retraction::right_invariant && carry_error(pose_step));
+  if (retraction_ == Retraction::left_invariant) turn_error(gain_pose_.row(2).dot(white));
 }
 
 /// Moves the estimate; returns the displacement of the vehicle.
@@ -355,7 +368,7 @@ Eigen::Vector2d JointGaussian::step(const Eigen::Vector2d& white) {
   Eigen::Vector2d moved = pose_step.head<2>();
   auto map_step = map_step_.reshaped().head(rows());
   map_step = gain_map_.leftCols<2>().topRows(rows()).lazyProduct(white);
-  if (retraction_ == Retraction::invariant) {
+  if (retraction_ != Retraction::additive) {
     const Eigen::Matrix2d V = exponential_jacobian(pose_step(2));
     moved = V * moved;
     apply(V, map_step_.leftCols(rows() / 2));
@@ -391,6 +404,25 @@ bool JointGaussian::carry_error(const Eigen::Vector2d& pose_step) {
   pose_.covariance = (T * pose_.covariance * T.transpose()).eval();
   mirror_lower(pose_.covariance);
   return true;
+}
+
+/// Turns the covariance of every point by the angle [rad] by which the vehicle has turned: the
+/// left-invariant error is in its axes (EQUATIONS (15.20)).
+void JointGaussian::turn_error(double angle) {
+  const Eigen::Matrix2d R = rotation_by(angle);
+  Eigen::Matrix3d T = Eigen::Matrix3d::Identity();
+  T.topLeftCorner<2, 2>() = R;
+  pose_.covariance = (T * pose_.covariance * T.transpose()).eval();
+  mirror_lower(pose_.covariance);
+  for (auto cross : map_.cross.colwise()) apply(R, cross.head(rows()).reshaped(2, rows() / 2));
+  map_.cross.topRows(rows()) = (map_.cross.topRows(rows()) * T.transpose()).eval();
+  for (Eigen::Index j = 0; j < row_of(n_landmarks_); j += 2) {
+    const Eigen::Index first = pack_of(j), count = rows() - first;
+    auto columns = map_.covariance.block(first, j, count, 2);
+    for (auto column : columns.colwise()) apply(R, column.reshaped(2, count / 2));
+    columns = (columns * R.transpose()).eval();
+  }
+  mirror_packs(map_.covariance, rows());
 }
 
 /// Let D be the derivative of the points by the pose and C their covariance with it. P <- P - D C'
@@ -436,14 +468,15 @@ void JointGaussian::change_map(bool carries_error) {
 JointGaussian::ObservationStatus JointGaussian::predict_by_sigma_points(
     const PointMoments& landmark, ExpectedObservation& expected) const {
   const Eigen::Vector2d away = landmark.mean - place_of(pose_.mean);
-  const Matrix35 T = line_of_sight(away);
+  const Matrix35 T = line_of_sight(away, retraction_);
   Eigen::Matrix<double, 5, 5> P;
   P << pose_.covariance, landmark.cross.transpose(), landmark.cross, landmark.covariance;
   const Eigen::LLT<Matrix3> factor(T * P * T.transpose() + kSmallest * Matrix3::Identity());
   if (factor.info() != Eigen::Success) return ObservationStatus::faulty;
   const Matrix3 root = factor.matrixL();
   const auto observe = [&](const Eigen::Vector3d& step) {
-    const Eigen::Vector2d to = away + T.topRightCorner<2, 2>().transpose() * step.head<2>();
+    const Eigen::Vector2d to = retracted(
+        away, T.topRightCorner<2, 2>().transpose() * step.head<2>(), step(2), retraction_);
     return linearised_detection(belief_.sensor, Pose{0.0, 0.0, pose_.mean.heading + step(2)},
                                 Point{to.x(), to.y()});
   };
@@ -466,6 +499,7 @@ JointGaussian::ObservationStatus JointGaussian::predict_by_sigma_points(
 
 LinearisedMotion JointGaussian::regressed(const MotionIncrement& motion) const {
   LinearisedMotion moved = linearised(motion);
+  if (retraction_ != Retraction::additive) return moved;
   const double turn = rule().spread * std::sqrt(pose_.covariance(2, 2));
   if (!(turn > 0.0)) return moved;
   const Eigen::Vector2d way(moved.mean.x - pose_.mean.x, moved.mean.y - pose_.mean.y);

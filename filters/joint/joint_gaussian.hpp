@@ -98,7 +98,8 @@ struct NewPoint {
 /// point p, J = [0 -1; 1 0]. The covariance that is kept is that of e, in the map frame, and it
 /// equals that of xi at the present estimate. A prediction is then the same for both errors, since
 /// Fx leaves xi unchanged. A detection is not: the covariance of xi stays while the estimate moves,
-/// so that the covariance of e must be transformed.
+/// so that the covariance of e must be transformed. The left-invariant error moves a point by the
+/// same exponential, in the axes of the vehicle: with its heading the covariance of e turns.
 class JointGaussian {
  public:
   /// Reserves memory for `room` landmarks, which grows if needed.
@@ -112,7 +113,8 @@ class JointGaussian {
   /// Returns `motion`, linearised at the estimate. Fx of several steps is again [1 0 a; 0 1 b; 0 0
   /// 1], where a and b are sums over the steps, so that one motion for many steps is exact.
   LinearisedMotion linearised(const MotionIncrement& motion) const;
-  /// Returns `motion`, linearised by sigma points of the heading before it (EQUATIONS (15.14)).
+  /// Returns `motion`, linearised by sigma points of the heading before it (EQUATIONS (15.14)). An
+  /// invariant error is linear in itself across a motion, which equals linearised().
   LinearisedMotion regressed(const MotionIncrement& motion) const;
   /// Predicted moments of the pose after `motion`.
   PoseMoments pose_after(const LinearisedMotion& motion) const;
@@ -196,6 +198,7 @@ class JointGaussian {
   void condition(const Eigen::Vector2d& white);
   Eigen::Vector2d step(const Eigen::Vector2d& white);
   bool carry_error(const Eigen::Vector2d& pose_step);
+  void turn_error(double angle);
   void change_map(bool carries_error);
 
   Belief belief_;

@@ -28,6 +28,13 @@ void LinearisationPoints::shift(const Eigen::Vector2d& way) {
   for (Eigen::Vector2d& landmark : landmarks_) landmark += way;
 }
 
+void LinearisationPoints::turn(double angle) {
+  const Eigen::Matrix2d R = rotation_by(angle);
+  const Eigen::Vector2d place = R * place_of(pose_);
+  pose_ = {place.x(), place.y(), pose_.heading};
+  for (Eigen::Vector2d& landmark : landmarks_) landmark = (R * landmark).eval();
+}
+
 void LinearisationPoints::move(const LinearisedMotion& motion) {
   const Eigen::Vector2d way = -quarter_turned(motion.by_heading);
   pose_ = {pose_.x + way(0), pose_.y + way(1), motion.mean.heading};

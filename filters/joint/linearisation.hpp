@@ -27,6 +27,8 @@ class LinearisationPoints {
   /// Common shift [m] of all points that brings them nearest to `gaussian`, in least squares.
   Eigen::Vector2d shift_to(const CompressedGaussian& gaussian) const;
   void shift(const Eigen::Vector2d& way);
+  /// Turns all points by an angle [rad] about the origin.
+  void turn(double angle);
   /// Moves the vehicle by `motion`, as linearised.
   void move(const LinearisedMotion& motion);
   /// Adds a landmark that was initialised at this distance from the point of the vehicle.

@@ -5,6 +5,7 @@
 #include "filters/setup/filter_setup.hpp"
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include <cmath>
 
@@ -12,8 +13,9 @@ namespace montecarta::filters {
 
 /// The move of the estimate by a Kalman step, which defines the error that has the covariance.
 enum class Retraction {
-  additive,  ///< EKF-SLAM: truth = estimate + error
-  invariant  ///< RI-EKF-SLAM: truth = exp(error) estimate, which moves pose and map together
+  additive,         ///< EKF-SLAM: truth = estimate + error
+  right_invariant,  ///< RI-EKF-SLAM: truth = exp(error) estimate, moves pose and map together
+  left_invariant    ///< truth = estimate exp(error), an error in the axes of the vehicle
 };
 
 /// V of the exponential of SE(2), Barrau sec. III: exp(turn, rho) = (R(turn), V(turn) rho). For a
@@ -28,6 +30,11 @@ inline Eigen::Matrix2d exponential_jacobian(double turn) {
   Eigen::Matrix2d V;
   V << along, -across, across, along;
   return V;
+}
+
+/// R, the rotation by `angle`.
+inline Eigen::Matrix2d rotation_by(double angle) {
+  return Eigen::Rotation2Dd(angle).toRotationMatrix();
 }
 
 /// J, the rotation by 90 degrees; J p is the displacement of p per rad of a rotation of the plane.

@@ -56,7 +56,7 @@ class Smoother final : public SlamFilter {
         model_(setup.belief),
         motion_kind_(motion_of(setup.options)),
         moments_(moments_of(setup.options)),
-        belief_(setup, Retraction::invariant, settings.iterations, moments_),
+        belief_(setup, Retraction::right_invariant, settings.iterations, moments_),
         window_(BelievedSensor(setup.belief), settings.poses, settings.jacobians) {}
 
   void start(const Pose& start) override {

@@ -45,7 +45,8 @@ TEST(Fixes, AreRefusedWithAFilterThatTakesNone) {
        {"smoother", "fixed_lag_smoother", "ampf_de", "fej_ekf_slam", "dead_reckoning"}) {
     EXPECT_THAT(complaint(kWithFixes, {"cells.cell=" + std::string(cell)}),
                 AllOf(HasSubstr(std::string(cell) + " with scenario.fixes = position"),
-                      HasSubstr("use one of ekf_slam, riekf_slam, ukf_slam, fastslam1")));
+                      HasSubstr("use one of ekf_slam, riekf_slam, ukf_slam, right_ukf_slam, "
+                                "left_ukf_slam, fastslam1")));
   }
   EXPECT_EQ(complaint(kWithFixes, {"cells.cell=ukf_slam"}), "nothing");
 }

@@ -44,7 +44,8 @@ TEST(KnownMap, IsRefusedWithAFilterThatCannotTakeIt) {
                            "relative_ekf_slam"}) {
     EXPECT_THAT(complaint(kKnownMap, {"cells.cell=" + std::string(cell)}),
                 AllOf(HasSubstr(std::string(cell) + " with belief.map = known"),
-                      HasSubstr("use one of ekf_slam, riekf_slam, ukf_slam, fastslam1")));
+                      HasSubstr("use one of ekf_slam, riekf_slam, ukf_slam, right_ukf_slam, "
+                                "left_ukf_slam, fastslam1")));
   }
   for (const FilterKind& kind : known_filters()) {
     if (kind.takes_prior || kind.name == "external") continue;

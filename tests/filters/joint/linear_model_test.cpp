@@ -188,7 +188,9 @@ std::vector<IteratedKind> iterated_kinds() {
           {fej_ekf_slam_kind(), "0"},
           {oc_ekf_slam_kind(), "0"},
           {robocentric_ekf_slam_kind(), "0"},
-          {ukf_slam_kind(), "0"}};
+          {ukf_slam_kind(), "0"},
+          {right_ukf_slam_kind(), "0"},
+          {left_ukf_slam_kind(), "0"}};
 }
 
 std::vector<IteratedKind> kinds_that_localise() {
