@@ -1,32 +1,44 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Computes the verdict on a Gaussian filter by the equations of STATISTICS 5:
+"""Computes the verdict on a Gaussian filter by the equations of STATISTICS 5, or on innovations
+that `montecarta judge --innovations` stored, also of those that passed a gate (STATISTICS 9):
 
     python3 verdict.py FILE.h5 CELL [WITHIN [LEVEL]]
 
-WITHIN is 1.1 if not given; LEVEL is 0.95, or verdict_level of cells.csv if cells stop by verdict.
-The cell must have poses by one Gaussian of full rank at every scan, and 3 complete runs."""
+WITHIN is 1.1 if not given; LEVEL is 0.95, or verdict_level of cells.csv if cells stop by verdict,
+and of innovations what leaves 0.95 for all sensors. The cell must have poses by one Gaussian of
+full rank at every scan, and 3 complete runs; or the components of innovations, and 10 runs."""
 import sys
 from collections import Counter, namedtuple
+from functools import partial
 from itertools import combinations
 
 import h5py
 import numpy as np
-from scipy import stats
+from scipy import interpolate, stats
 from scipy.spatial.transform import Rotation
 
-NAMES = ["forward", "left", "heading"]
 RATIOS = ["size", "component", "stretch", "component_by_stretch", "scan"]
 NOT_PROVED = ["component_by_stretch", "scan", "bias_by_stretch", "correlation_by_stretch",
               "between_runs"]  # "consistent" needs that no deviation beyond the margin is shown
 Member = namedtuple("Member", "family name estimate p interval")  # interval(level)
+# Errors {run, scan, component} in units of their covariance and of their deviations, NaN where
+# there is none; times of the scans [s]; names of the components; [(count, components, limit)] of
+# rows that passed a gate.
+Errors = namedtuple("Errors", "whitened standardised times names gate")
+
+
+def settings_of(cell):
+    return cell["settings"].attrs if "settings" in cell else {}
 
 
 def errors_of(path, label):
-    """Whitened and standardised errors {run, scan, component}, and the times of the scans [s]."""
+    """The errors of a cell."""
     with h5py.File(path, "r") as file:
         if "sums" in file:
             sys.exit(f"{path}: has sums instead of runs: use montecarta analyze")
         cell, rows, times = file["cells"][label], file["scan_row"][:], file["scan"][:]
+        if settings_of(cell).get("state") == "innovations" and "error" in cell:
+            return innovations_of(cell, label, times)
         is_several = cell.attrs["particles"] > 0 or "pose_mean_mixture" in cell
         if is_several or "error" in cell or "pose_covariance" not in cell:
             sys.exit(f"{label}: verdict.py takes only poses by one Gaussian with its covariance")
@@ -44,7 +56,61 @@ def errors_of(path, label):
     correlation = P / (sigma[..., :, None] * sigma[..., None, :])
     if not (np.isfinite(e).all() and np.linalg.eigvalsh(correlation).min() > 1e-12):
         sys.exit(f"{label}: verdict.py needs finite errors and covariances of full rank")
-    return np.linalg.solve(np.linalg.cholesky(P), e[..., None])[..., 0], e / sigma, times
+    u = np.linalg.solve(np.linalg.cholesky(P), e[..., None])[..., 0]
+    return Errors(u, e / sigma, times, ["forward", "left", "heading"], [])
+
+
+def innovations_of(cell, label, times):
+    """The innovations of a cell, which are stored on the scale that they have without a gate."""
+    e, P, settings = cell["error"][:], cell["error_covariance"][:], settings_of(cell)
+    names = settings["components"].split(", ")
+    if len(e) < 10:
+        sys.exit(f"{label}: verdict.py needs 10 runs of innovations")
+    e, P = e.reshape(*e.shape[:2], len(names)), P.reshape(*e.shape[:2], len(names), len(names))
+    there = np.isfinite(e).all(axis=-1)
+    u, z = np.full(e.shape, np.nan), np.full(e.shape, np.nan)
+    u[there] = np.linalg.solve(np.linalg.cholesky(P[there]), e[there][..., None])[..., 0]
+    z[there] = e[there] / np.sqrt(np.diagonal(P[there], axis1=-2, axis2=-1))
+    rows = [text.split() for text in settings.get("gate_limits", "").split(", ") if text]
+    return Errors(u, z, times, names, [(float(row[0]), int(row[3]), float(row[6])) for row in rows])
+
+
+def shown_by(gate, factor):
+    """(9.4): the ratio that is expected if the covariance is too small by a factor."""
+    v, weights = np.polynomial.legendre.leggauss(96)
+    v, weights = (v + 1) / 2, weights / 2
+    probability, weights = 1 - v**2, weights * 2 * v  # the integrand is infinite at 1
+    total = 0.0
+    for count, n, limit in gate:
+        nis = factor * stats.chi2.ppf(probability * stats.chi2.cdf(limit / factor, n), n)
+        share = stats.chi2.cdf(nis, n) / stats.chi2.cdf(limit, n)
+        total += count * weights @ stats.chi2.ppf(share, n)
+    return total / sum(count * n for count, n, _ in gate)
+
+
+def behind_gate(gate, members):
+    """The members with factors on the covariance in place of ratios on the scale of (9.3). Those of
+    single components have no test."""
+    if not gate:
+        return members
+    octaves = np.linspace(-7, 7, 113)
+    shown = np.log([shown_by(gate, 2.0**octave) for octave in octaves])
+    octave_of = interpolate.PchipInterpolator(shown, octaves)
+
+    def factor_of(ratio):
+        if ratio >= np.exp(shown[-1]):
+            return 128.0
+        least = np.exp(shown[0])
+        return ratio / least / 128 if ratio <= least else 2.0 ** octave_of(np.log(ratio))
+
+    def interval_of(member, level):
+        lower, upper = (factor_of(end) for end in member.interval(level))
+        return lower, upper if upper < 128.0 else np.inf
+
+    members = [member for member in members if not member.family.startswith("component")]
+    return [member._replace(estimate=factor_of(member.estimate), interval=partial(interval_of,
+                                                                                  member))
+            if member.family in RATIOS else member for member in members]
 
 
 def law(values, above, below, is_ratio=False):
@@ -106,27 +172,27 @@ def zero_member(family, name, values, skewed=1.0):
 
 def scan_members(u, times):
     """Exactly chi-square if errors are Gaussian; by the runs as well, of which the wider counts."""
-    runs, _, d = u.shape
-    values = (u**2).mean(axis=2)
-    known = values[:, values.any(axis=0)]
-    relative = known / known.mean(axis=0)
-    cubes = [skewness(v) * v.std(ddof=1) ** 3 for v in relative.T]
-    common = np.mean(cubes) / np.mean(relative.var(axis=0, ddof=1)) ** 1.5
-    for s, of_scan in enumerate(values.T):
-        if runs < 10 and not of_scan.any():
-            continue  # rounded away
-        ratio, freedom = of_scan.mean(), runs * d
-        exact = 2 * min(stats.chi2.cdf(freedom * ratio, freedom),
-                        stats.chi2.sf(freedom * ratio, freedom))
-        by_runs = ratio_member("scan", "", of_scan, common)
+    d = u.shape[2]
+    values = [of_scan[~np.isnan(of_scan)] for of_scan in (u**2).mean(axis=2).T]
+    known = [v / v.mean() for v in values if len(v) >= 3 and v.any() and v.std() > 0]
+    cubes = [skewness(v) * v.std(ddof=1) ** 3 for v in known]
+    common = np.mean(cubes) / np.mean([v.var(ddof=1) for v in known]) ** 1.5 if known else 0.0
+    for s, of_scan in enumerate(values):
+        if len(of_scan) == 0 or len(of_scan) < 10 and not of_scan.any():
+            continue  # missing, or rounded away
+        ratio, freedom = of_scan.mean(), len(of_scan) * d
+        exact = min(1, 2 * min(stats.chi2.cdf(freedom * ratio, freedom),
+                               stats.chi2.sf(freedom * ratio, freedom)))
+        by_runs = ratio_member("scan", "", of_scan, common) if len(of_scan) >= 3 else None
 
-        def interval(level, ratio=ratio, by_runs=by_runs):
+        def interval(level, ratio=ratio, freedom=freedom, by_runs=by_runs):
             tails = np.array([(1 + level) / 2, (1 - level) / 2])
             bounds = ratio * freedom / stats.chi2.ppf(tails, freedom)
-            own = by_runs.interval(level)
+            own = by_runs.interval(level) if by_runs else bounds
             return min(bounds[0], own[0]), max(bounds[1], own[1])
 
-        yield Member("scan", f"at {times[s]:.1f} s", ratio, max(min(1, exact), by_runs.p), interval)
+        yield Member("scan", f"at {times[s]:.1f} s", ratio, max(exact, by_runs.p) if by_runs
+                     else exact, interval)
 
 
 def excess_member(family, excess, unit, written):
@@ -144,6 +210,7 @@ def group_members(u):
     ends = np.arange(9) * u.shape[1] // 8
     groups = [block[k:k + 8] for block in np.split(u, range(64, len(u), 64))
               for k in range(0, len(block) - 7, 8)]
+    groups = [np.where(np.isnan(g).any(axis=0), 0.0, g) for g in groups]  # what all runs have
     if len(groups) < 6:
         return
 
@@ -153,7 +220,8 @@ def group_members(u):
     apart = np.abs(np.subtract.outer(range(8), range(8))) >= 3
 
     def of_different(x, y):  # sum of products of parts far apart, of other components
-        return (np.outer(x.sum(axis=1), y.sum(axis=1)) - x @ y.T)[apart].sum()
+        own, all_of_them = x @ y.T, np.outer(x.sum(axis=1), y.sum(axis=1))
+        return (own if x.shape[1] == 1 else all_of_them - own)[apart].sum()
 
     spread, unit, tails, square = [], [], [], []
     for g in groups:
@@ -162,6 +230,7 @@ def group_members(u):
         spread.append(np.mean([of_different(z[i] - z[j], z[i] - z[j]) / 2 - 2 * of_different(c, c)
                                for (i, j), c in zip(pairs, common)]))
         unit.append(np.mean([of_different(z[i], z[j]) for i, j in pairs]))
+        g = g[:, g.any(axis=0)]  # {run, place}
         fourth = (g**4).mean(axis=0)
         square.append((((g**2).sum(axis=0) ** 2 - 8 * fourth) / 56).mean())
         tails.append(fourth.mean() - 3 * square[-1])
@@ -170,49 +239,60 @@ def group_members(u):
     yield excess_member("tails", tails, square, lambda excess: excess)
 
 
-def members_of(u, z, times):
-    """All tests of whitened errors u and standardised errors z {run, scan, component}."""
-    scans, d, ratio = u.shape[1], u.shape[2], np.mean(u**2)
+def members_of(errors):
+    """All tests of errors."""
+    u, z, times, names, gate = errors
+    return behind_gate(gate, list(tests_of(u, z, times, names)))
+
+
+def tests_of(u, z, times, names):
+    """All tests of whitened errors u and standardised errors z, without regard to a gate."""
+    scans, d, ratio = u.shape[1], u.shape[2], np.nanmean(np.nanmean(u**2, axis=(1, 2)))
     ends = np.arange(9) * scans // 8 if scans >= 16 else [0]
     stretches = [(f" {times[a]:.3g} s to {times[b - 1]:.3g} s", slice(a, b))
                  for a, b in zip(ends, ends[1:])]
     parts = [part for _, part in stretches] or [slice(0, scans)]
-    bias = np.array([u[:, part].mean(axis=(0, 1)) for part in parts])  # {stretch, component}
-    pairs = {NAMES[a] + " and " + NAMES[b]: (u[..., a] * u[..., b], bias[:, a] * bias[:, b])
+
+    def means(x, axis=1):  # of the runs that have such a number
+        found = np.nanmean(x, axis=axis)
+        return found[~np.isnan(found)]
+
+    bias = np.array([np.nanmean(np.nanmean(u[:, part], axis=1), axis=0) for part in parts])
+    pairs = {names[a] + " and " + names[b]: (u[..., a] * u[..., b], bias[:, a] * bias[:, b])
              for a, b in combinations(range(d), 2)}
-    components = [(NAMES[k], z[..., k]) for k in range(d)]
+    components = [(names[k], z[..., k]) for k in range(d)]
 
     def over_drive(family, test, named):
-        yield from (test(family, name, x.mean(axis=1)) for name, x in named)
-        yield from (test(family + "_by_stretch", name + when, x[:, part].mean(axis=1))
+        yield from (test(family, name, means(x)) for name, x in named)
+        yield from (test(family + "_by_stretch", name + when, means(x[:, part]))
                     for name, x in named for when, part in stretches)
 
     def correlations():
         def product(family, name, x, of_biases):
-            return zero_member(family, name, (x.mean(axis=1) - of_biases) / ratio)
+            return zero_member(family, name, (means(x) - of_biases) / ratio)
 
         for name, (x, of_biases) in pairs.items():
-            yield product("correlation", name, x, of_biases.mean())
+            yield product("correlation", name, x, np.nanmean(of_biases))
         for name, (x, of_biases) in pairs.items():
             for (when, part), of_bias in zip(stretches, of_biases):
                 yield product("correlation_by_stretch", name + when, x[:, part], of_bias)
 
     squares = [(name, x**2) for name, x in components]
-    yield ratio_member("size", "all", (u**2).mean(axis=(1, 2)))
-    by_component = list(over_drive("component", ratio_member, squares))
+    yield ratio_member("size", "all", means(u**2, (1, 2)))
+    by_component = list(over_drive("component", ratio_member, squares)) if d > 1 else []
     yield from by_component[:d]
     for when, part in stretches:
-        yield ratio_member("stretch", when, (u[:, part] ** 2).mean(axis=(1, 2)))
+        yield ratio_member("stretch", when, means(u[:, part] ** 2, (1, 2)))
     yield from by_component[d:]
     yield from scan_members(u, times)
     yield from over_drive("bias", zero_member, components)
     yield from correlations()
     yield from group_members(u)
-    largest = np.abs(z).max()
-    _, scan, k = np.unravel_index(np.abs(z).argmax(), z.shape)
+    largest = np.nanmax(np.abs(z))
+    _, scan, k = np.unravel_index(np.nanargmax(np.abs(z)), z.shape)
     near = next(part for part in parts if part.stop > scan)
-    of_place = max(1, np.mean(z[:, near, k] ** 2))
-    p = min(1, 2 * z.size * stats.norm.sf(largest / np.sqrt(of_place)))
+    of_place = max(1, np.mean(means(z[:, near, k] ** 2)))
+    p = min(1, 2 * np.isfinite(z).sum() * stats.norm.sf(largest / np.sqrt(of_place)))
     yield Member("tails", "largest error", largest, p, lambda level: (np.nan, np.nan))
 
 
@@ -246,9 +326,18 @@ def judge(members, level, within):
     return "consistent" if is_within else answer, rows
 
 
+def usual_level(path, label):
+    """0.95, or what leaves that for whiteness and size of the innovations of all sensors."""
+    with h5py.File(path, "r") as file:
+        if settings_of(file["cells"][label]).get("state") != "innovations":
+            return 0.95
+        return 1 - 0.05 / (2 * len(file["cells"]))
+
+
 if __name__ == "__main__":
-    within, level = [float(text) for text in sys.argv[3:] + ["1.1", "0.95"][len(sys.argv) - 3:]]
-    members = list(members_of(*errors_of(*sys.argv[1:3])))
+    within = float(sys.argv[3]) if len(sys.argv) > 3 else 1.1
+    members = members_of(errors_of(*sys.argv[1:3]))
+    level = float(sys.argv[4]) if len(sys.argv) > 4 else usual_level(*sys.argv[1:3])
     answer, rows = judge(members, level, within)
     print(f"{sys.argv[2]}: {answer}\nfamily, member: estimate [interval], p of the family")
     least = min(member.p for member in members if member.family == "scan")

@@ -81,9 +81,9 @@ struct JudgedPart {
 
 /// The test of the mean square of errors {run}{scan, `dimension`} that are independent from scan to
 /// scan: a chi-square variable, of fewer degrees of freedom if the squares vary more than those of
-/// Gaussian errors.
-void add_white_test(Family family, Member member, const ErrorsOfRuns& runs, std::size_t dimension,
-                    const JudgedPart& part, std::vector<MemberTest>& all) {
+/// Gaussian errors. Returns how much more they do, which is taken to be `least_more` at least.
+double add_white_test(Family family, Member member, const ErrorsOfRuns& runs, std::size_t dimension,
+                      const JudgedPart& part, double least_more, std::vector<MemberTest>& all) {
   std::vector<double> sums, counts;
   double sum = 0.0, count = 0.0;
   for (const std::vector<double>& run : runs) {
@@ -101,14 +101,15 @@ void add_white_test(Family family, Member member, const ErrorsOfRuns& runs, std:
     }
   }
   const double ratio = sum / count;
-  if (!(ratio >= kLeastRatio)) return;
+  if (!(ratio >= kLeastRatio)) return least_more;
   double squares = 0.0;
   for (std::size_t s = 0; s < sums.size(); ++s) {
     squares += std::pow(sums[s] / ratio - counts[s], 2);
   }
   member.estimate = ratio;
-  const double more_than_gaussian = std::max(1.0, squares / (2.0 * count));
+  const double more_than_gaussian = std::max(least_more, squares / (2.0 * count));
   all.push_back(chi_squared_test(family, std::move(member), count / more_than_gaussian));
+  return more_than_gaussian;
 }
 
 }  // namespace
@@ -161,14 +162,15 @@ std::vector<MemberTest> AlongDrive::white_tests(std::span<const std::string> com
   std::vector<MemberTest> all;
   if (dimension_ == 0 || ends.empty()) return all;
   const JudgedPart whole{0, ends.back(), 0, dimension_};
-  add_white_test(Family::size, {}, whitened_, dimension_, whole, all);
+  // A stretch is short, and its own squares may not show how they vary.
+  const double of_whole = add_white_test(Family::size, {}, whitened_, dimension_, whole, 1.0, all);
   for (std::size_t k = 0; dimension_ > 1 && k < dimension_; ++k) {
     add_white_test(Family::component, {.name = components[k]}, standardised_, dimension_,
-                   {0, ends.back(), k, k + 1}, all);
+                   {0, ends.back(), k, k + 1}, 1.0, all);
   }
   for (std::size_t s = 0; s < stretches.size(); ++s) {
     add_white_test(Family::stretch, stretches[s], whitened_, dimension_,
-                   {s == 0 ? 0 : ends[s - 1], ends[s], 0, dimension_}, all);
+                   {s == 0 ? 0 : ends[s - 1], ends[s], 0, dimension_}, of_whole, all);
   }
   return all;
 }

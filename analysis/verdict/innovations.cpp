@@ -6,9 +6,12 @@
 #include "analysis/statistics/nees_bounds.hpp"
 #include "engine/errors.hpp"
 
+#include <boost/math/special_functions/gamma.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <utility>
 
 namespace montecarta::analysis {
@@ -33,15 +36,42 @@ double level_of_each(std::size_t lags, std::size_t components, double level) {
 /// The number of standard deviations that white normal numbers do not exceed at this level.
 double white_deviate(double level) { return normal_quantile(0.5 + 0.5 * level); }
 
-/// The same of the correlation of the NIS over so many pairs, which are skewed (STATISTICS (9.2)):
-/// its long tail has all of the error.
-double white_deviate_of_nis(double level, double pairs, double components) {
+/// The same of the correlation over so many pairs of numbers with this skewness, by which the mean
+/// of their products has a long tail (STATISTICS (9.2)).
+double white_deviate_of_nis(double level, double pairs, double skewness) {
   constexpr double kFewest = 40.0;  // fewer pairs have no long tail
-  const double skewness = 8.0 / (components * std::sqrt(pairs));
-  const double corrected = std::max(0.0, 1.0 - kFewest / pairs) * skewness / (1.0 + 0.5 * skewness);
-  const double z = normal_quantile(level);
-  return std::max(white_deviate(level), z + corrected * (z * z - 1.0) / 6.0);
+  const double of_mean =
+      std::max(0.0, 1.0 - kFewest / pairs) * skewness * skewness / std::sqrt(pairs);
+  const double z = white_deviate(level);
+  return z + of_mean * (z * z - 1.0) / 6.0;
 }
+
+/// Two thirds powers of chi-square variables with the same numbers of degrees of freedom again and
+/// again, less their means, in their deviations.
+class NisScores {
+ public:
+  double operator()(double nis, std::uint32_t dof) {
+    const auto [found, is_new] = laws_.try_emplace(dof);
+    if (is_new) {
+      found->second.mean = moment(dof, 2.0 / 3.0);
+      found->second.deviation =
+          std::sqrt(moment(dof, 4.0 / 3.0) - found->second.mean * found->second.mean);
+    }
+    const double root = std::cbrt(nis);
+    return (root * root - found->second.mean) / found->second.deviation;
+  }
+
+ private:
+  struct Law {
+    double mean = 0.0, deviation = 1.0;
+  };
+  /// Expectation of a power of a chi-square variable.
+  static double moment(std::uint32_t dof, double power) {
+    return std::pow(2.0, power) / boost::math::tgamma_delta_ratio(0.5 * dof, power);
+  }
+
+  std::map<std::uint32_t, Law> laws_;
+};
 
 bool is_innovation(double nis, std::uint32_t dof) {
   return dof > 0 && nis >= 0.0 && std::isfinite(nis);
@@ -64,7 +94,9 @@ bool is_off(Answer answer) {
 void LaggedProducts::add(std::span<const double> numbers) {
   numbers_.clear();
   for (std::size_t s = numbers.size(); s-- > 0;) {  // the last one comes first: earlier ones follow
-    if (!std::isnan(numbers[s])) numbers_.push_back(numbers[s]);
+    if (std::isnan(numbers[s])) continue;
+    numbers_.push_back(numbers[s]);
+    cubes_ += numbers[s] * numbers[s] * numbers[s];
   }
   const std::size_t count = numbers_.size();
   is_there_.assign(count, 1.0);
@@ -98,7 +130,15 @@ double LaggedProducts::correlation(std::size_t lag) const {
   return products_[lag].mean_product(mean()) / power;
 }
 
-InnovationSums::Totals::Totals(std::size_t scans) : nis_(scans), products_(scans) {}
+double LaggedProducts::skewness() const {
+  const double n = products_[0].n, m = mean(), power = products_[0].mean_product(m);
+  const double third = cubes_ / n - 3.0 * m * products_[0].product / n + 2.0 * m * m * m;
+  const double found = third / power / std::sqrt(power);
+  return std::isfinite(found) ? found : std::sqrt(n);  // that of numbers one of which is huge
+}
+
+InnovationSums::Totals::Totals(std::size_t scans)
+    : nis_(scans), products_(scans), spreads_(ends_of_stretches(scans).size()) {}
 
 void InnovationSums::Totals::add(std::span<const double> nis, std::span<const std::uint32_t> dof) {
   std::vector<double> there(nis.begin(), nis.end());
@@ -106,8 +146,14 @@ void InnovationSums::Totals::add(std::span<const double> nis, std::span<const st
     if (!is_innovation(nis[s], dof[s])) there[s] = kNaN;
   }
   nis_.add(there, std::vector<double>(dof.begin(), dof.end()));
+  const std::vector<std::size_t> ends = ends_of_stretches(nis_.scans().size());
+  for (std::size_t s = 0, stretch = 0; s < there.size(); ++s) {
+    if (s == ends[stretch]) ++stretch;
+    if (!std::isnan(there[s])) spreads_[stretch].add(there[s], dof[s]);
+  }
+  NisScores scores;
   for (std::size_t s = 0; s < there.size(); ++s) {
-    there[s] = (there[s] - dof[s]) / std::sqrt(2.0 * dof[s]);  // NaN stays NaN
+    if (!std::isnan(there[s])) there[s] = scores(there[s], dof[s]);
   }
   products_.add(there);
 }
@@ -221,14 +267,13 @@ void InnovationSums::Totals::find_correlations(double level, Innovations& result
   result.white_bound.assign(kInnovationLags, kNaN);
   const std::size_t lags = products_.lags(runs());
   const double each = level_of_each(lags, result.components.size(), level);
-  double freedom = 0.0, farthest = 0.0;
-  for (const SummedError::Scan& scan : nis_.scans()) freedom += scan.dimensions;
+  const double skewness = products_.skewness();
+  double farthest = 0.0;
   for (std::size_t lag = 1; lag <= lags; ++lag) {
     const double correlation = products_.correlation(lag);
     if (std::isnan(correlation)) continue;
     const double pairs = products_.pairs(lag);
-    const double bound =
-        white_deviate_of_nis(each, pairs, freedom / products_.pairs(0)) / std::sqrt(pairs);
+    const double bound = white_deviate_of_nis(each, pairs, skewness) / std::sqrt(pairs);
     result.autocorrelation[lag - 1] = correlation;
     result.white_bound[lag - 1] = bound;
     if (result.worst_lag > 0 && std::abs(correlation) / bound <= farthest) continue;
@@ -241,7 +286,7 @@ void InnovationSums::Totals::judge_size(std::span<const double> times, double le
                                         const GateScale* gate, Innovations& result) const {
   std::vector<FamilyTest> families;
   if (result.whiteness() != Whiteness::not_white) {
-    families = nis_.white_families(level, times);
+    families = nis_.white_families(level, times, spreads_);
   } else if (runs() >= kFewestRunsOfSize) {
     families = judge_tests({nis_.size_test()}, level);
   }

@@ -74,7 +74,7 @@ struct Innovations {
   /// are, it is on the size by the means of runs, or untested for fewer than kFewestRunsOfSize
   /// runs.
   Verdict verdict;
-  /// {lag - 1} autocorrelation of the NIS over all runs; NaN if not tested.
+  /// {lag - 1} autocorrelation over all runs of the NIS to the power 2/3; NaN if not tested.
   std::vector<double> autocorrelation;
   /// {lag - 1} bound of the autocorrelation; white innovations stay within it at all lags with the
   /// probability of the level.
@@ -138,7 +138,11 @@ class LaggedProducts {
   /// Number of pairs at a lag, and their correlation; NaN if there is none.
   double pairs(std::size_t lag) const { return products_[lag].n; }
   double correlation(std::size_t lag) const;
-  static constexpr auto parts() { return std::tuple(added(&LaggedProducts::products_)); }
+  /// Skewness of the numbers.
+  double skewness() const;
+  static constexpr auto parts() {
+    return std::tuple(added(&LaggedProducts::products_, &LaggedProducts::cubes_));
+  }
 
  private:
   struct Products {
@@ -152,6 +156,7 @@ class LaggedProducts {
   };
 
   std::vector<Products> products_;  ///< {lag from 0}
+  double cubes_ = 0.0;              ///< sum of the cubes of the numbers
   /// The numbers of the run that is added, the last one first, and 1 where there is one; behind
   /// them zeros.
   std::vector<double> numbers_, is_there_;
@@ -196,15 +201,18 @@ class InnovationSums {
                        const GateScale* gate, std::vector<ComponentCorrelation> components) const;
     /// Number of runs with an innovation.
     std::uint64_t runs() const { return nis_.ratios().n; }
-    static constexpr auto parts() { return std::tuple(added(&Totals::nis_, &Totals::products_)); }
+    static constexpr auto parts() {
+      return std::tuple(added(&Totals::nis_, &Totals::products_, &Totals::spreads_));
+    }
 
    private:
     void find_correlations(double level, Innovations& result) const;
     void judge_size(std::span<const double> times, double level, double within,
                     const GateScale* gate, Innovations& result) const;
 
-    SummedError nis_;          ///< {scan} sums of the NIS
-    LaggedProducts products_;  ///< of the deviations of the NIS
+    SummedError nis_;                       ///< {scan} sums of the NIS
+    LaggedProducts products_;               ///< of the scores of the NIS
+    std::vector<SpreadOfSquares> spreads_;  ///< {stretch} of the NIS
   };
   void merge(InnovationSums& next);
   std::vector<ComponentCorrelation> correlated_components(std::uint64_t runs, double level) const;

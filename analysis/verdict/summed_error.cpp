@@ -143,27 +143,34 @@ std::vector<FamilyTest> SummedError::families(double level, std::span<const doub
   return judge_tests(std::move(all), level);
 }
 
-std::vector<FamilyTest> SummedError::white_families(double level,
-                                                    std::span<const double> times) const {
+std::vector<FamilyTest> SummedError::white_families(
+    double level, std::span<const double> times, std::span<const SpreadOfSquares> spreads) const {
   std::vector<MemberTest> all = scan_tests(times);
+  const std::vector<std::size_t> ends = ends_of_stretches(scans_.size());
+  expect(spreads.size() == ends.size(), "the spread of each stretch");
   const auto law = std::make_shared<ChiSquareLaw>();
-  const auto add_sum = [&](Family family, Member member, std::size_t first, std::size_t end) {
+  double of_whole = 1.0;  // a stretch is short, and its own squares may not show how they vary
+  const auto add_sum = [&](Family family, Member member, std::size_t first, std::size_t end,
+                           const SpreadOfSquares& spread) {
     double nees = 0.0, dimensions = 0.0;
     for (std::size_t s = first; s < end; ++s) {
       nees += scans_[s].nees;
       dimensions += scans_[s].dimensions;
     }
-    if (!(dimensions > 0.0)) return;
+    if (!(dimensions > 0.0)) return 1.0;
     member.estimate = nees / dimensions;
-    all.push_back(exact_test(family, std::move(member), dimensions, law));
+    const double own = nees > 0.0 ? spread.more_than_gaussian(member.estimate, dimensions) : 1.0;
+    all.push_back(exact_test(family, std::move(member), dimensions / std::max(own, of_whole), law));
+    return own;
   };
-  add_sum(Family::size, {.name = "all"}, 0, scans_.size());
-  const std::vector<std::size_t> ends = ends_of_stretches(scans_.size());
+  SpreadOfSquares whole;
+  for (const SpreadOfSquares& spread : spreads) whole.add(spread);
+  of_whole = add_sum(Family::size, {.name = "all"}, 0, scans_.size(), whole);
   for (std::size_t k = 0; k < ends.size() && ends.size() > 1; ++k) {
     const std::size_t first = k == 0 ? 0 : ends[k - 1];
     add_sum(Family::stretch,
             {.from = times[first], .to = times[ends[k] - 1], .origin = origin_of(times)}, first,
-            ends[k]);
+            ends[k], spreads[k]);
   }
   return judge_tests(std::move(all), level);
 }

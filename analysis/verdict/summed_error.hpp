@@ -5,8 +5,10 @@
 #include "analysis/statistics/sums.hpp"
 #include "analysis/verdict/verdict.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <span>
+#include <tuple>
 #include <vector>
 
 namespace montecarta::analysis {
@@ -16,6 +18,34 @@ inline constexpr std::size_t kStretches = 8;
 
 /// {stretch} 1 + its last scan, of a drive of `scans` scans; one stretch if there are too few.
 std::vector<std::size_t> ends_of_stretches(std::size_t scans);
+
+/// How much squared errors vary, each of its own number of components (STATISTICS (9.5)).
+class SpreadOfSquares {
+ public:
+  void add(double nees, double dimension) {
+    nees_ += nees * nees;
+    both_ += nees * dimension;
+    dimensions_ += dimension * dimension;
+  }
+  void add(const SpreadOfSquares& next) {
+    nees_ += next.nees_;
+    both_ += next.both_;
+    dimensions_ += next.dimensions_;
+  }
+  /// The variance of the errors, whose ratio and sum of components these are, in that of Gaussian
+  /// ones; 1 if it is less.
+  double more_than_gaussian(double ratio, double components) const {
+    const double variance = nees_ / (ratio * ratio) - 2.0 * both_ / ratio + dimensions_;
+    return std::max(1.0, variance / (2.0 * components));
+  }
+  static constexpr auto parts() {
+    using Sums = SpreadOfSquares;
+    return std::tuple(added(&Sums::nees_, &Sums::both_, &Sums::dimensions_));
+  }
+
+ private:
+  double nees_ = 0.0, both_ = 0.0, dimensions_ = 0.0;
+};
 
 /// The test of a ratio of squared errors to the expected ones over runs, as a member of `family`.
 MemberTest ratio_test(Family family, Member member, const RunMean& ratio);
@@ -57,8 +87,11 @@ class SummedError {
   /// run.
   std::vector<FamilyTest> families(double level, std::span<const double> times) const;
   /// The families of size, stretches and scans for errors that are independent from scan to scan,
-  /// as the innovations of a consistent filter are: all of these sums are exactly chi-square.
-  std::vector<FamilyTest> white_families(double level, std::span<const double> times) const;
+  /// as the innovations of a consistent filter are: all of these sums are chi-square. Those of size
+  /// and stretches have fewer degrees of freedom if the squares vary more than Gaussian ones, by
+  /// `spreads` {stretch}.
+  std::vector<FamilyTest> white_families(double level, std::span<const double> times,
+                                         std::span<const SpreadOfSquares> spreads) const;
   static constexpr auto parts() {
     return std::tuple(added(&SummedError::scans_, &SummedError::ratios_));
   }

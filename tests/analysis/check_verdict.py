@@ -5,8 +5,9 @@
 usage: check_verdict.py OUT.h5 ANALYZE_CSV [CELL...]
 
 ANALYZE_CSV is what `montecarta analyze --csv` wrote; without cells all are compared. Prints every
-number that differs, by more than 1e-9 of itself in estimates and 1e-6 in intervals and p-values,
-and ends with 1 if there is one. Numbers below 1e-300 have fewer digits: there both count as 0."""
+number that differs, by more than 1e-9 of itself in estimates, 1e-6 in intervals and p-values, and
+1e-3 in factors behind a gate, and ends with 1 if there is one. Numbers below 1e-300 have fewer
+digits: there both count as 0."""
 import csv
 import sys
 
@@ -32,7 +33,8 @@ def main(result, folder, *labels):
     for label in labels or cells:
         cell, tests = cells[label], rows_of(f"{folder}/families.csv")
         tests = [row for row in tests if row["cell"] == label]
-        members = list(verdict.members_of(*verdict.errors_of(result, label)))
+        errors = verdict.errors_of(result, label)
+        members = verdict.members_of(errors)
         answer, judged = verdict.judge(members, float(cell["verdict_level"]), float(cell["within"]))
         if not cell["verdict"].removeprefix("slightly ").startswith(answer):
             wrong.append(f"{label}: {cell['verdict']}, recomputed {answer}")
@@ -41,8 +43,11 @@ def main(result, folder, *labels):
             continue
         for row, member, (own, joint, family_p, shown) in zip(tests, members, judged):
             theirs = dict(zip(INTERVALS, own + joint)) | {"p": member.p, "family_p": family_p}
-            found = [("estimate", member.estimate, 1e-9), ("shown", shown, 1e-9)]
-            found += [(name, value, 1e-6) for name, value in theirs.items()]
+            is_factor = errors.gate and member.family in verdict.RATIOS
+            found = [("estimate", member.estimate, 1e-3 if is_factor else 1e-9),
+                     ("shown", shown, 1e-9)]
+            found += [(name, value, 1e-3 if is_factor and name in INTERVALS else 1e-6)
+                      for name, value in theirs.items()]
             wrong += [f"{label} {member.family} {member.name} {name}: montecarta {row[name]}, "
                       f"recomputed {value!r}" for name, value, tolerance in found
                       if differs(row[name], value, tolerance)]

@@ -158,11 +158,11 @@ DriveCounts counts_of(const FewDrives& line, std::uint64_t studies) {
     const FewDrives::Found found = line.found(1 + k);
     count.white += found.are_white ? 1.0 : 0.0;
     const Verdict judged = found.are_white ? line.white(found) : line.any(found);
-    // Single scans of so few runs, and whiteness, have the laws of Gaussian errors alone.
-    const bool is_off = line.noise == Noise::gaussian ? is_rejected(judged) || !found.are_white
+    // Single scans of so few runs have the law of Gaussian errors alone.
+    const bool is_off = line.noise == Noise::gaussian ? is_rejected(judged)
                                                       : is_rejected(judged, Family::size) ||
                                                             is_rejected(judged, Family::stretch);
-    count.accused += is_off || found.have_bias ? 1.0 : 0.0;
+    count.accused += is_off || !found.are_white || found.have_bias ? 1.0 : 0.0;
     if (!has_size_within(judged)) continue;
     count.by_white_law += found.are_white && !found.have_bias ? 1.0 : 0.0;
     count.answered += has_size_within(line.any(found)) ? 1.0 : 0.0;
