@@ -410,19 +410,22 @@ def print_text(text):
 
 
 def print_rows(title, rows):
-    print(f"\n## {title}\n\n| claim | where | measured [95 %] | answer |\n|---|---|---|---|")
+    # The answer comes first, since a phone shows only the first columns.
+    print(f"\n## {title}\n\n| answer | claim | where | measured [95 %] |\n|---|---|---|---|")
     for row in sorted(rows, key=lambda row: ORDER.index(row["answer"])):
         answer = f"[{row['answer']}]({row['page']}.md)" if row["page"] else row["answer"]
-        print(f"| {escaped(row['claim'])} | {escaped(row['where'])} | {escaped(row['measured'])} | "
-              f"{answer}{escaped(row['rest'])} |")
+        found = [part for part in (row["measured"], row["rest"].lstrip(",: "))
+                 if part not in ("", "-")]
+        print(f"| {answer} | {escaped(row['claim'])} | {escaped(row['where'])} | "
+              f"{escaped('; '.join(found)) or '-'} |")
 
 
 def print_settings(rows):
-    print("\n## Settings that the papers print\n\n| printed | where | the study has instead | "
-          "answer |\n|---|---|---|---|")
+    print("\n## Settings that the papers print\n\n| answer | printed | where | "
+          "the study has instead |\n|---|---|---|---|")
     for row in rows:
-        print(f"| {escaped(row['claim'])} | {escaped(row['where'])} | {escaped(row['measured'])} | "
-              f"[{row['answer']}](../studies/{row['study']}.ini) |")
+        print(f"| [{row['answer']}](../studies/{row['study']}.ini) | {escaped(row['claim'])} | "
+              f"{escaped(row['where'])} | {escaped(row['measured'])} |")
 
 
 def print_ledger(ledger):
