@@ -37,10 +37,10 @@ class OpenedForPrint {
   }
 }
 
-/** A table that is wider than its place says that it scrolls, and keys scroll it. */
+/** A table or figure that is wider than its place says that it scrolls, and keys scroll it. */
 function markScrolling(box) {
   const scrolls = box.scrollWidth > box.clientWidth;
   box.classList.toggle("scrolls", scrolls);
-  if (scrolls) fill(box, {tabindex: 0, role: "region", "aria-label": "A table, scrolls sideways"});
+  if (scrolls) fill(box, {tabindex: 0, role: "region", "aria-label": "Scrolls sideways"});
   else for (const name of ["tabindex", "role", "aria-label"]) box.removeAttribute(name);
 }

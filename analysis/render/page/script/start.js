@@ -13,8 +13,8 @@ for (const element of document.querySelectorAll("figure > script.chart-data")) {
 for (const element of document.querySelectorAll(".player > script.replay-data")) {
   new Player(element.parentElement, parsed(element));
 }
-for (const table of document.querySelectorAll(".scroll > table")) {
-  new ResizeObserver(() => markScrolling(table.parentElement)).observe(table.parentElement);
+for (const box of document.querySelectorAll(".scroll")) {
+  new ResizeObserver(() => markScrolling(box)).observe(box);
 }
 document.addEventListener("click", ({target}) => {
   if (target.closest("a")?.hash && target.closest("a").hash === location.hash) showTarget();
