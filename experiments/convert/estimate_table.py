@@ -46,11 +46,14 @@ class Table:
         if not line.endswith(("\n", "\r")):
             raise ConversionError(f"{place}: the last row has no end (the file may have been cut "
                                   "short): end it with a line break if it is whole")
+        if not self.rows and self._names_only_the_pose(len(words)):
+            self.names = self.units = self.written = ()
         width = len(self.names or (self.rows[0] if self.rows else words))
         if len(words) != width:
             raise ConversionError(f"{place}: {len(words)} fields, but {width} in the "
                                   f"{'header' if self.names else 'first row'} (fields are "
-                                  "missing, or left over): write all rows alike")
+                                  "missing, or left over): write all rows alike" +
+                                  (", and a name for each column" if self.names else ""))
         self.rows.append(words)
         self.places.append(place)
 
@@ -81,6 +84,13 @@ class Table:
                 if name not in CNSPY_ERRORS and name not in CNSPY_CHARTS]
         self.written, self.units = zip(*map(name_and_unit, kept))
         self.names = tuple(map(plain, self.written))
+
+    def _names_only_the_pose(self, width):
+        """Whether a row is the pose that the header names in the order of TUM, and behind it a
+        covariance of which the header names at most the first number."""
+        named = tuple(map(pose_name, self.names[:8]))
+        return (named == ("time", *POSE) and len(self.names) <= 9 and width in (8 + 21, 8 + 36) and
+                self.units[0] in ("", "s"))
 
     @staticmethod
     def _words(text, place, is_comment=False):

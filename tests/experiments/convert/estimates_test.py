@@ -137,6 +137,11 @@ class Layouts(Estimates):
                     "--quaternion wxyz", **first)
         self.expect(row(1.5, POSE, WHOLE[UPPER]), WHOLE, "upper", quaternion="xyzw", **first)
         self.assertNotIn("ASSUMED", self.said)
+        for behind in ("", " cov"):  # a header of the pose alone
+            self.expect(TUM.rstrip() + behind + "\n" + row(1.5, POSE, WHOLE), WHOLE, "wide TUM",
+                        **first)
+        self.expect_refusal("# timestamp tx ty tz qw qx qy qz\n" + row(1.5, POSE, WHOLE), "e.txt:2",
+                            "44 fields", "a name for each column")
         self.expect(row(1.5, POSE, WHOLE[LOWER]), WHOLE, "lower", **first)
         self.expect_refusal(row(1.5, POSE, WHOLE), "e.txt:1", "--order position-first",
                             "--order rotation-first")
