@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/render/page/html.hpp"
+#include "analysis/run/imported_state.hpp"
 #include "analysis/study/study_analysis.hpp"
 #include "analysis/verdict/block_errors.hpp"
+#include "analysis/verdict/innovations.hpp"
 #include "analysis/verdict/sentence.hpp"
 #include "analysis/verdict/verdict.hpp"
 #include "engine/core/judgement.hpp"
@@ -15,17 +17,31 @@
 
 #include <algorithm>
 #include <iostream>
+#include <vector>
 
 namespace montecarta::experiments {
 namespace {
 
-const StoredCell& cell_to_judge(const Arguments& arguments, const ResultFile& file) {
+/// What the gate says of a cell.
+struct GatedCell {
+  CellAnalysis cell;
+  Verdict verdict;           ///< verdict on its errors, or on the size of its innovations
+  bool is_coloured = false;  ///< whether its innovations are shown not to be white
+  GateAnswer answer = GateAnswer::undecided;
+};
+
+bool are_innovations(const ResultFile& file) {
+  return !file.cells().empty() && analysis::imported_state(file.cells().front()).are_innovations();
+}
+
+/// The cells that are judged: the one that is named, or all sensors of one filter.
+std::vector<StoredCell> cells_to_judge(const Arguments& arguments, const ResultFile& file) {
   const auto label = arguments.text("cell");
-  if (!label && file.cells().size() == 1) return file.cells().front();
-  return item_called(label.value_or(""), file.cells(), &StoredCell::label,
-                     (label ? formatted("--cell {}: no cell of {}", *label, file.path())
-                            : "gate: --cell CELL is needed") +
-                         " (one of its filters is judged)");
+  if (!label && (file.cells().size() == 1 || are_innovations(file))) return file.cells();
+  return {item_called(label.value_or(""), file.cells(), &StoredCell::label,
+                      (label ? formatted("--cell {}: no cell of {}", *label, file.path())
+                             : "gate: --cell CELL is needed") +
+                          " (one of its filters is judged)")};
 }
 
 /// Throws StudyError if runs are missing: those that ended first are not a fair sample.
@@ -81,11 +97,15 @@ Json json_of(const analysis::BlockVerdict& block) {
           {"interval", json_of(block.verdict.ratio())}};
 }
 
+std::string reason_of(const GatedCell& gated, const Allowance& allowed) {
+  return sentence(gated.cell.label, gated.verdict) + too_many(gated.verdict, allowed) +
+         (gated.is_coloured ? " The innovations are not white." : "");
+}
+
 /// JSON with all numbers on which the verdict rests. The scans are represented by the one with the
 /// least p-value.
-Json json_of(const CellAnalysis& cell, const Allowance& allowed, GateAnswer answer) {
-  const std::string& label = cell.label;
-  const Verdict& verdict = cell.verdict;
+Json json_of(const GatedCell& gated, const Allowance& allowed) {
+  const auto& [cell, verdict, is_coloured, answer] = gated;
   Json blocks = Json::array();
   if (const auto* found = cell.find<std::vector<analysis::BlockVerdict>>()) {
     for (const analysis::BlockVerdict& block : *found) blocks.push_back(json_of(block));
@@ -102,10 +122,10 @@ Json json_of(const CellAnalysis& cell, const Allowance& allowed, GateAnswer answ
                         {"rejected", test.is_rejected},
                         {"members", std::move(members)}});
   }
-  return {{"cell", label},
+  return {{"cell", cell.label},
           {"gate", name_of(answer)},
           {"verdict", analysis::name_of(verdict.answer)},
-          {"reason", sentence(label, verdict) + too_many(verdict, allowed)},
+          {"reason", reason_of(gated, allowed)},
           {"more_runs", verdict.more_runs ? Json(*verdict.more_runs) : Json()},
           {"within", verdict.within},
           {"level", verdict.level},
@@ -120,32 +140,61 @@ Json json_of(const CellAnalysis& cell, const Allowance& allowed, GateAnswer answ
           {"blocks", std::move(blocks)}};
 }
 
+GatedCell gated(const ResultFile& file, const StoredCell& stored, const Arguments& arguments,
+                const Allowance& allowed) {
+  require_all_runs(file, stored);
+  GatedCell result;
+  result.cell = analyze_cell(file, stored, kUsualLevel, file.runs().size(), parallel_of(arguments),
+                             arguments.number("within", kLeastMargin, kMostMargin));
+  result.verdict = result.cell.verdict;
+  const auto* found = result.cell.find<analysis::Innovations>();
+  if (found != nullptr && are_innovations(file)) {
+    result.is_coloured = found->whiteness() == analysis::Whiteness::not_white;
+    if (found->judges_size()) {
+      result.verdict = found->verdict;
+      result.verdict.is_of_innovations = true;
+      result.verdict.runs = result.cell.complete;
+      result.verdict.failed = result.cell.failures.size();
+    }
+  }
+  result.answer = result.is_coloured
+                      ? GateAnswer::inconsistent
+                      : at_place(formatted("{}: cell {}", file.path().string(), stored.label),
+                                 [&] { return gate(result.verdict, allowed); });
+  return result;
+}
+
+/// Inconsistent if one cell is, else undecided if one is.
+GateAnswer answer_of(const std::vector<GatedCell>& all) {
+  for (const GateAnswer answer : {GateAnswer::inconsistent, GateAnswer::undecided}) {
+    if (std::ranges::find(all, answer, &GatedCell::answer) != all.end()) return answer;
+  }
+  return GateAnswer::consistent;
+}
+
 }  // namespace
 
 int gate_command(const Arguments& arguments) {
-  const auto within = arguments.number("within", kLeastMargin, kMostMargin);
   const Allowance allowed = {.failed = arguments.count("failed", 0, UINT64_MAX).value_or(0),
                              .unusable = arguments.count("invalid", 0, UINT64_MAX).value_or(0)};
   const ResultFile file = open_stored(arguments.operands().front());
-  const StoredCell& stored = cell_to_judge(arguments, file);
-  const std::string place = file.path().string();
-  if (!file.has_errors()) {
-    throw StudyError(place +
-                     ": has no truth (a gate judges errors): gate a study with a truth, or see "
-                     "references and innovations by montecarta analyze");
+  const std::vector<StoredCell> cells = cells_to_judge(arguments, file);
+  if (!file.has_errors() && !are_innovations(file)) {
+    throw StudyError(
+        "{}: has no truth (a gate judges errors or innovations): gate a study with a truth, or see "
+        "references by montecarta analyze",
+        file.path().string());
   }
-  require_all_runs(file, stored);
-  const CellAnalysis cell =
-      analyze_cell(file, stored, kUsualLevel, file.runs().size(), parallel_of(arguments), within);
-  const GateAnswer answer = at_place(formatted("{}: cell {}", place, stored.label),
-                                     [&] { return gate(cell.verdict, allowed); });
+  std::vector<GatedCell> all;
+  for (const StoredCell& cell : cells) all.push_back(gated(file, cell, arguments, allowed));
   if (arguments.has("json")) {
-    std::cout << json_of(cell, allowed, answer).dump(2) << "\n";
+    Json json = Json::array();
+    for (const GatedCell& one : all) json.push_back(json_of(one, allowed));
+    std::cout << (all.size() == 1 ? json.front() : json).dump(2) << "\n";
   } else {
-    std::cout << wrapped(sentence(stored.label, cell.verdict) + too_many(cell.verdict, allowed),
-                         output_width());
+    for (const GatedCell& one : all) std::cout << wrapped(reason_of(one, allowed), output_width());
   }
-  return code_of(answer);
+  return code_of(answer_of(all));
 }
 
 }  // namespace montecarta::experiments

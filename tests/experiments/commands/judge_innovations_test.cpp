@@ -98,6 +98,41 @@ std::string sensors_with_a_gate(double factor, double limit, int rows = 1500) {
   return text;
 }
 
+/// NIS of two components of two sensors; those of the camera are `share` of the one before and the
+/// rest of a new one.
+std::string sensors_of_which_one_remembers(double share) {
+  RngStream draw({22, 0, 0, 0, Draw::test});
+  std::string text = "time_s,sensor,nis,nis_dof\n";
+  double before = 2.0;
+  for (int k = 0; k < 4000; ++k) {
+    const double gps = -2.0 * std::log(1.0 - draw.uniform());
+    before = share * before - 2.0 * (1.0 - share) * std::log(1.0 - draw.uniform());
+    text += std::to_string(k) + ",gps," + to_text(gps) + ",2\n";
+    text += std::to_string(k) + ",camera," + to_text(before) + ",2\n";
+  }
+  return text;
+}
+
+// `montecarta gate` needs no truth for innovations, and none of the sensors may fail.
+TEST_F(JudgeInnovations, AreGatedBySizeAndWhitenessOfEverySensor) {
+  write("i.csv", sensors_with_a_gate(1.0, 1e9, 6000));
+  ASSERT_EQ(judged({"i.csv"}, {"--innovations"}).code, 0);
+  const Called right = call({"gate", "mine.h5", "--within", "1.2"});
+  EXPECT_EQ(right.code, 0) << right.out << right.err;
+  EXPECT_THAT(right.out, AllOf(HasSubstr("i.gps is consistent"), HasSubstr("i.lidar is ")));
+  EXPECT_THAT(call({"gate", "mine.h5", "--json"}).out,
+              AllOf(testing::StartsWith("["), HasSubstr("i.gps"), HasSubstr("i.lidar")));
+  write("i.csv", sensors_with_a_gate(2.0, 1e9));
+  ASSERT_EQ(judged({"i.csv"}, {"--innovations"}).code, 0);
+  EXPECT_EQ(call({"gate", "mine.h5"}).code, 4);
+  write("i.csv", sensors_of_which_one_remembers(0.3));
+  ASSERT_EQ(judged({"i.csv"}, {"--innovations"}).code, 0);
+  const Called coloured = call({"gate", "mine.h5", "--within", "1.5"});
+  EXPECT_EQ(coloured.code, 4) << coloured.out << coloured.err;
+  EXPECT_THAT(coloured.out, HasSubstr("The innovations are not white."));
+  EXPECT_EQ(call({"gate", "mine.h5", "--within", "1.5", "--cell", "i.gps"}).code, 0);
+}
+
 // The gate of one sensor is not that of another, and both are judged together.
 TEST_F(JudgeInnovations, MayHaveAGateOfOneSensor) {
   write("i.csv", sensors_with_a_gate(2.0, 9.0));
