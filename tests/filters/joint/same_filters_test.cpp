@@ -168,22 +168,22 @@ class GroupFilter {
     };
     const Eigen::Index n = x.size();
     const double w = 1.0 / 6.0, middle = 1.0 - static_cast<double>(n) / 3.0;
-    const Eigen::MatrixXd S = std::sqrt(3.0) * root(row);
+    const Eigen::MatrixXd spread = std::sqrt(3.0) * root(row);
     const Eigen::Vector2d centre = observed(x);
     Eigen::Matrix2Xd y(2, 2 * n);
     for (Eigen::Index k = 0; k < n; ++k) {
-      y.col(k) = models::residual(observed(retracted(S.col(k))), centre, wraps);
-      y.col(n + k) = models::residual(observed(retracted(-S.col(k))), centre, wraps);
+      y.col(k) = models::residual(observed(retracted(spread.col(k))), centre, wraps);
+      y.col(n + k) = models::residual(observed(retracted(-spread.col(k))), centre, wraps);
     }
     const Eigen::Matrix2Xd odd = 0.5 * (y.leftCols(n) - y.rightCols(n));
-    learn(S.transpose().partialPivLu().solve(odd.transpose()).transpose());
+    learn(spread.transpose().partialPivLu().solve(odd.transpose()).transpose());
     const Eigen::Vector2d mean = w * y.rowwise().sum();
-    Eigen::Matrix2d Pyy = noise_of_detection() + middle * mean * mean.transpose();
+    Eigen::Matrix2d S = noise_of_detection() + middle * mean * mean.transpose();
     y.colwise() -= mean;
-    Pyy += w * y * y.transpose();
-    const Eigen::MatrixXd Pxy = 2.0 * w * S * odd.transpose();
-    const Eigen::MatrixXd K = Pyy.llt().solve(Pxy.transpose()).transpose();
-    P -= (K * Pyy * K.transpose()).eval();
+    S += w * y * y.transpose();
+    const Eigen::MatrixXd C = 2.0 * w * spread * odd.transpose();
+    const Eigen::MatrixXd K = S.llt().solve(C.transpose()).transpose();
+    P -= (K * S * K.transpose()).eval();
     step(K * (models::residual(vector_of(seen), centre, wraps) - mean));
   }
   void step(const Eigen::VectorXd& xi) {
