@@ -164,7 +164,8 @@ Figure whiteness_figure(const StudyAnalysis& study) {
     return cell.get<Innovations>().autocorrelation;
   };
   std::vector<Panel> panels = cell_panels(
-      study, {"whiteness", "correlation of NIS to the power 2/3", {}, {}, Scale::around_zero}, correlation);
+      study, {"whiteness", "correlation of NIS to the power 2/3", {}, {}, Scale::around_zero},
+      correlation);
   for (Panel& panel : panels) panel.bands = white_bands(study);
   std::vector<double> lags(kInnovationLags);
   std::iota(lags.begin(), lags.end(), 1.0);

@@ -53,7 +53,6 @@ ImportedState imported_state(const StoredCell& cell) {
   found.state = setting("state");
   found.convention = setting("error");
   found.windows = setting("windows");
-  found.bounds_increments = setting("increments") == "bounded";
   found.moved = setting("moved");
   found.adds_truth_covariance = setting("truth_covariance") == "added";
   found.pair = setting("pair");

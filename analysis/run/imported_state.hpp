@@ -23,8 +23,7 @@ struct ImportedState {
   std::string state;
   std::string convention;  ///< name of the convention of the error, among kErrorConventions
   std::string windows;  ///< [s] lengths of the windows whose increments are judged; empty if none
-  bool bounds_increments = false;  ///< whether covariances of increments are only bounds
-  std::string moved;  ///< what was moved of the truths onto the first estimates; empty if nothing
+  std::string moved;    ///< what was moved of the truths onto the first estimates; empty if nothing
   bool adds_truth_covariance = false;  ///< whether covariances of the truths were added
   /// The two estimators whose difference is judged, by the largest covariance that it can have;
   /// empty if errors are judged.

@@ -48,14 +48,30 @@ std::vector<std::string> notes_on_innovations(const StudyAnalysis& study) {
   return notes;
 }
 
-/// The cells of moved errors whose covariances are only bounds.
-std::string bounded_cells(const StudyAnalysis& study) {
+/// The cells whose covariances are only bounds, or those whose covariances are exact.
+std::string cells_of(const StudyAnalysis& study, bool are_bounded) {
   std::string cells;
   for (const CellAnalysis& cell : study.cells) {
-    if (study.imported.moved.empty() || !has_bounds(cell.settings)) continue;
+    if (has_bounds(cell.settings) != are_bounded) continue;
     cells += (cells.empty() ? "" : ", ") + cell.label;
   }
   return cells;
+}
+
+/// What increments are, and by which covariance those of each cell are judged.
+std::vector<std::string> notes_on_windows(const StudyAnalysis& study) {
+  std::vector<std::string> notes = {
+      prose("components", "windows",
+            {{"windows", study.imported.windows}, {"components", components_text(study)}})};
+  const std::string added = cells_of(study, false), bounded = cells_of(study, true);
+  const auto of = [](const std::string& cells, const std::string& others) {
+    return others.empty() ? std::string() : " of " + cells;
+  };
+  if (!added.empty())
+    notes.push_back(prose("components", "added", {{"cells", of(added, bounded)}}));
+  if (!bounded.empty())
+    notes.push_back(prose("components", "bounded", {{"cells", of(bounded, added)}}));
+  return notes;
 }
 
 /// Hints on other errors and layouts. Bounds belong to the stated error alone, and have none.
@@ -103,19 +119,17 @@ std::vector<std::string> imported_notes(const StudyAnalysis& study) {
             {{"convention", convention},
              {"meaning", sentence_on(study.imported.state, convention)},
              {"components", components_text(study)}})};
-  if (!study.imported.windows.empty())
-    notes = {prose("components", "windows",
-                   {{"windows", study.imported.windows}, {"components", components_text(study)}}),
-             prose("components", study.imported.bounds_increments ? "bounded" : "added")};
+  if (!study.imported.windows.empty()) notes = notes_on_windows(study);
   if (!study.imported.pair.empty()) {
     notes.push_back(prose("components", "pair", {{"pair", study.imported.pair}}));
     return notes;
   }
-  if (!study.imported.moved.empty())
+  if (!study.imported.moved.empty()) {
     notes.push_back(prose("components", "anchor", {{"moved", study.imported.moved}}));
-  const std::string bounded = bounded_cells(study);
-  if (!bounded.empty())
-    notes.push_back(prose("components", "anchor bounded", {{"cells", bounded}}));
+    const std::string bounded = cells_of(study, true);
+    if (!bounded.empty())
+      notes.push_back(prose("components", "anchor bounded", {{"cells", bounded}}));
+  }
   if (study.imported.adds_truth_covariance)
     notes.push_back(prose("components", "truth covariance"));
   std::ranges::move(hints_of(study), std::back_inserter(notes));

@@ -63,7 +63,7 @@ std::string far_nearer_in_words(const ConventionHint& hint, const std::string& s
   for (std::size_t k = 0; k < hint.by_convention.size(); ++k) {
     const Verdict& found = hint.by_convention[k];
     if (found.answer == Answer::untested || fits_errors(found)) continue;
-    if (distance(k) <= distance(stated) - std::log(kFarNearer))
+    if (std::isfinite(distance(k)) && distance(k) <= distance(stated) - std::log(kFarNearer))
       nearer.emplace_back(kErrorConventions[k].name);
   }
   if (nearer.empty()) return "";
@@ -126,8 +126,9 @@ std::string in_words(const ConventionHint& hint, const std::string& cell, const 
       (fits_errors(found) ? fitting : others).push_back(with_ratio(name, found));
     }
   }
-  if (said_fits && is_refuted) return "";
-  const std::string mistakes = said_fits ? "" : mistakes_in_words(hint);
+  // Size and scans of a few runs may not show a part that is far too small, which sums of it do.
+  const std::string mistakes = said_fits ? in_words(hint.mistakes) : mistakes_in_words(hint);
+  if (said_fits && is_refuted) fitting = others = {};
   if (fitting.empty() && others.empty() && mistakes.empty()) return "";
   std::string words = cell + ": the verdict is by the error " + said + ". ";
   if (fitting.empty() && others.empty()) return words + mistakes;

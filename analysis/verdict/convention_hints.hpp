@@ -73,9 +73,10 @@ class ConventionHints {
 };
 
 /// A text that names the conventions other than `said` that fit the covariances of `cell`, those
-/// that do not, and the mistakes that would explain errors that do not fit. Empty if nothing was
-/// tested, and if only the verdict, which has more tests, refutes the stated convention
-/// (`is_refuted`): then what the hint does not reject may be refuted likewise.
+/// that do not, and the mistakes that would explain errors that do not fit, or bring them far
+/// nearer to their variances. Empty if nothing was tested. If only the verdict, which has more
+/// tests, refutes the stated convention (`is_refuted`), what the hint does not reject may be
+/// refuted likewise, and is not named.
 std::string in_words(const ConventionHint& hint, const std::string& cell, const std::string& said,
                      bool is_refuted = false);
 

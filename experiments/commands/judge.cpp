@@ -122,7 +122,7 @@ void refuse_number_as_file(const std::vector<std::string>& operands) {
   }
 }
 
-/// The arrays in an HDF5 file.
+/// The arrays in an HDF5 file, or in one of NumPy or MATLAB.
 std::unique_ptr<EstimateSource> arrays_of(const Arguments& arguments) {
   const std::vector<std::string>& operands = arguments.operands();
   if (operands.size() > 1) {
@@ -186,23 +186,22 @@ void refuse_other_arrays(const std::string& path) {
         "f.close()",
         path);
   }
-  constexpr std::array<std::string_view, 4> kOfArrays = {".h5", ".hdf5", ".mat", ".npz"};
-  if (std::ranges::count(kOfArrays, ending) > 0) {
+  if (ending == ".h5" || ending == ".hdf5") {
     throw StudyError(
-        "{}: is there no such file, or no HDF5 file (arrays are in one): give its name; convert "
-        ".npz and a .mat of version 7 by experiments/convert/estimates.py, or call "
+        "{}: is there no such file, or no HDF5 file (arrays are in one): give its name, or call "
         "montecarta.judge from Python",
         path);
   }
 }
 
-/// The estimates that the operands name: CSV files, or one HDF5 file of arrays.
+/// The estimates that the operands name: CSV files, or one file of arrays.
 std::unique_ptr<EstimateSource> source_of(const Arguments& arguments, JudgingOptions& options) {
   const std::vector<std::string>& operands = arguments.operands();
-  if (h5::is_hdf5(operands.front())) return arrays_of(arguments);
+  if (h5::is_hdf5(operands.front()) || are_foreign_arrays(operands.front()))
+    return arrays_of(arguments);
   refuse_other_arrays(operands.front());
   if (arguments.has("names")) {
-    throw StudyError("--names: needs an HDF5 file (a CSV file has a header): leave it out");
+    throw StudyError("--names: needs a file of arrays (a CSV file has a header): leave it out");
   }
   if (arguments.has("innovations")) return innovations_of(arguments, options);
   if (options.gates) {

@@ -16,8 +16,8 @@ try:
     import scipy.io
 except ImportError as missing:
     sys.exit(f"{os.path.basename(sys.argv[0])}: {missing.name} is missing in this Python (these "
-             "scripts compute with NumPy and SciPy): bash .ci/install-packages convert, and call "
-             "the script by /usr/bin/python3")
+             "scripts compute with NumPy and SciPy): install both, on Debian with 'apt-get install "
+             "python3-scipy', for /usr/bin/python3")
 
 LASER_BEAMS = 361  # per sweep, half a degree apart: beam 0 right, 180 ahead, 360 left
 ROUNDING = 0.0006  # [s] tolerance: the list of all records has times in whole milliseconds

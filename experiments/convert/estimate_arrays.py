@@ -2,7 +2,7 @@
 """Reads the estimates of many runs from arrays in one .npz file or one MATLAB file: `mean` {run,
 scan, column} or `error` {run, scan, d}, `covariance` {run, scan, d, d}, `truth` {run, scan, column}
 or {scan, column}; optional `time` {scan} or {run, scan} and `names` {column}, or one text with
-commas. NaN is missing.
+commas; `nis` and `nis_dof` {run, scan}, which arrays.py writes. NaN is missing.
 """
 import os
 
@@ -12,7 +12,8 @@ from covariance_columns import in_order
 from estimate_layouts import POSE_COLUMNS, Run
 from estimate_table import seconds
 
-KNOWN = ("mean", "error", "covariance", "truth", "time", "names")
+KNOWN = ("mean", "error", "covariance", "truth", "time", "names", "nis", "nis_dof")
+MATLAB_HDF5 = b"MATLAB 7.3"  # a file of version 7.3 begins with it
 
 
 class Arrays:
@@ -20,8 +21,11 @@ class Arrays:
 
     def __init__(self, path):
         self.path = path
-        self.variables = (conversion.MatFile(path).variables if path.lower().endswith(".mat")
-                          else self._npz(path))
+        if not path.lower().endswith(".mat"):
+            self.variables = self._npz(path)
+        else:
+            self.variables = (self._hdf5(path) if is_matlab_hdf5(path)
+                              else conversion.MatFile(path).variables)
 
     @staticmethod
     def _npz(path):
@@ -35,6 +39,22 @@ class Arrays:
                                       "path and its permissions") from None
             raise ConversionError(f"{path}: is damaged or no .npz of numbers ({fault}): save it by "
                                   "numpy.savez, without objects") from None
+
+    @staticmethod
+    def _hdf5(path):
+        """The variables of a MATLAB file of version 7.3, which has their axes turned round."""
+        try:
+            import h5py
+        except ImportError:
+            raise ConversionError(f"{path}: a MATLAB file of version 7.3 (h5py reads it): install "
+                                  "python3-h5py, or save it with -v7") from None
+        try:
+            with h5py.File(path, "r") as file:
+                found = {name: file[name] for name in KNOWN if name in file}
+                return {name: matlab_variable(file, stored) for name, stored in found.items()}
+        except (OSError, KeyError, RuntimeError, TypeError, ValueError, AttributeError) as fault:
+            raise ConversionError(f"{path}: is damaged or no MATLAB file ({fault}): save it "
+                                  "again") from None
 
     def get(self, name, axes):
         """The array as doubles, or None. `axes` are the counts of axes that it may have."""
@@ -78,6 +98,24 @@ class Arrays:
                                   f"{{run, scan}}, here {scans} or {runs} x {scans}): save it so")
         own = values.ravel() if values.size == scans else values.reshape(runs, scans)[run]
         return [str(one) if values.dtype.kind in "iu" else repr(float(one)) for one in own]
+
+
+def is_matlab_hdf5(path):
+    try:
+        with open(path, "rb") as file:
+            return file.read(len(MATLAB_HDF5)) == MATLAB_HDF5
+    except OSError:
+        return False  # which reading it will say
+
+
+def matlab_variable(file, stored):
+    """An array as MATLAB has it: numbers, a text, or a list of the texts of a cell array."""
+    kind = stored.attrs.get("MATLAB_class", b"double")
+    if kind == b"char":
+        return "".join(map(chr, np.asarray(stored).ravel()))
+    if kind == b"cell":
+        return [matlab_variable(file, file[one]) for one in np.asarray(stored).ravel()]
+    return np.asarray(stored).T
 
 
 def check_shape(arrays, name, found, wanted):

@@ -57,7 +57,8 @@ const ArrayFile& not_a_result(const ArrayFile& file, const std::filesystem::path
 EstimateArrays::EstimateArrays(std::filesystem::path path, std::string cell,
                                const std::optional<std::string>& names)
     : path_(std::move(path)),
-      file_(path_),
+      converted_(are_foreign_arrays(path_) ? std::make_unique<ConvertedArrays>(path_) : nullptr),
+      file_(converted_ ? converted_->path() : path_),
       cells_{std::move(cell)},
       states_(open(not_a_result(file_, path_).has("error") ? "error" : "mean", 3)),
       covariance_(open("covariance", 4)),

@@ -2,10 +2,12 @@
 #pragma once
 
 #include "experiments/judging/array_file.hpp"
+#include "experiments/judging/converted_arrays.hpp"
 #include "experiments/judging/estimate_source.hpp"
 
 #include <cstddef>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -17,7 +19,8 @@ namespace montecarta::experiments {
 /// `error` {run, scan, d}, or `mean` {run, scan, column} and `truth` {run, scan, column} or
 /// {scan, column}; `covariance` {run, scan, d, d}; and, if there are, `time` {scan} or
 /// {run, scan} [s], `nis` {run, scan} with `nis_dof` {run, scan}, and the text attribute `names`,
-/// the columns of the state as in a CSV file. A scan whose numbers are all NaN is missing.
+/// the columns of the state as in a CSV file. A scan whose numbers are all NaN is missing. Arrays
+/// of NumPy and MATLAB are converted to such a file.
 class EstimateArrays final : public EstimateSource {
  public:
   /// `names` are those of the columns, with commas; by default the attribute's. Throws StudyError
@@ -59,6 +62,7 @@ class EstimateArrays final : public EstimateSource {
   StateRows states_of(const Array& array, std::size_t run, const std::string& place) const;
 
   std::filesystem::path path_;
+  std::unique_ptr<ConvertedArrays> converted_;  ///< of another file than HDF5
   ArrayFile file_;
   std::vector<std::string> cells_;
   std::vector<std::uint64_t> runs_;

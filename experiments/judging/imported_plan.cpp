@@ -51,7 +51,6 @@ TextPairs import_settings(const StateShape& shape, const JudgingOptions& options
     std::vector<std::string> windows;
     for (const double window : options.windows) windows.push_back(to_text(window));
     settings.emplace_back("windows", joined(windows));
-    if (options.bounds_increments) settings.emplace_back("increments", "bounded");
   }
   if (options.anchor) {
     settings.emplace_back("anchor", name_of(*options.anchor));
@@ -121,6 +120,8 @@ StudyPlan imported_plan(const EstimateSource& source, const StateRows& first,
     TextPairs all = settings;
     if (!options.bounds_anchored.empty() && options.bounds_anchored[c])
       all.emplace_back("anchored", "bounded");
+    if (!options.bounds_increments.empty() && options.bounds_increments[c])
+      all.emplace_back("increments", "bounded");
     std::ranges::copy(source.settings(c), std::back_inserter(all));
     plan.cells.push_back(imported_cell(source.cells()[c], first, components, std::move(all)));
   }

@@ -162,15 +162,33 @@ Increments::Increments(std::unique_ptr<EstimateSource> poses, const JudgingOptio
       check_label(labels_.back());
     }
   }
-  are_bounded_ = are_corrected();
+  survey_poses();
+  is_bounded_.assign(poses_->cells().size(), false);
+  for (std::size_t k = 0; k < is_bounded_.size(); ++k) is_bounded_[k] = is_corrected(k);
 }
 
-/// Whether more than a few increments have no covariance that was added: then estimates were
-/// corrected after their start.
-bool Increments::are_corrected() const {
+/// Throws StudyError if poses or truths have other units than their columns say. Notes on them.
+void Increments::survey_poses() {
+  LikelyMistakes mistakes(poses_->cells(), convention_, false, false);
+  for (std::size_t run = 0; run < runs().size(); ++run) {
+    for (std::size_t k = 0; k < poses_->cells().size(); ++k) {
+      const std::filesystem::path path = poses_->place(k, run);
+      const StateRows rows = poses_->estimates(k, run);
+      const StateRows truth = poses_->truth(k, run, rows.shape);
+      mistakes.add_truth(truth, poses_->truth_place(k, run));
+      mistakes.add(k, rows, path, truth);
+    }
+  }
+  mistakes_ = mistakes.notes();
+}
+
+/// Whether more than a few increments of an estimator have no covariance that was added: then its
+/// estimates were corrected after their start.
+bool Increments::is_corrected(std::size_t estimator) const {
   constexpr double kMostShare = 0.01;
   double all = 0.0, without = 0.0;
-  for (std::size_t cell = 0; cell < labels_.size(); ++cell) {
+  for (std::size_t window = 0; window < windows_.size(); ++window) {
+    const std::size_t cell = estimator * windows_.size() + window;
     for (std::size_t run = 0; run < runs().size(); ++run) {
       for (const Eigen::MatrixXd& P : estimates(cell, run).covariance) {
         all += 1.0;
@@ -179,6 +197,13 @@ bool Increments::are_corrected() const {
     }
   }
   return without > kMostShare * all;
+}
+
+std::vector<bool> Increments::are_bounded() const {
+  std::vector<bool> all;
+  for (std::size_t cell = 0; cell < labels_.size(); ++cell)
+    all.push_back(is_bounded_[of_poses(cell)]);
+  return all;
 }
 
 std::filesystem::path Increments::place(std::size_t cell, std::size_t run) const {
@@ -194,15 +219,16 @@ StateRows Increments::estimates(std::size_t cell, std::size_t run) const {
   const TruthPath truth(poses_->truth(of_poses(cell), run, poses.shape), truth_place(cell, run),
                         match_);
   use_ = {};  // what is said of one file is said of its last reading
-  return increments_of(poses, truth.at(poses, place(cell, run), use_),
-                       windows_[cell % windows_.size()], convention_,
-                       are_bounded_ ? IncrementCovariance::bound : IncrementCovariance::added);
+  return increments_of(
+      poses, truth.at(poses, place(cell, run), use_), windows_[cell % windows_.size()], convention_,
+      is_bounded_[of_poses(cell)] ? IncrementCovariance::bound : IncrementCovariance::added);
 }
 
 std::vector<std::string> Increments::notes() const {
   std::vector<std::string> notes = poses_->notes();
   const std::vector<std::string> of_truth = use_.notes(false);
   notes.insert(notes.end(), of_truth.begin(), of_truth.end());
+  notes.insert(notes.end(), mistakes_.begin(), mistakes_.end());
   return notes;
 }
 

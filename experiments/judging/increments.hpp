@@ -3,6 +3,7 @@
 
 #include "experiments/judging/estimate_source.hpp"
 #include "experiments/judging/judging_options.hpp"
+#include "experiments/judging/likely_mistakes.hpp"
 
 #include <memory>
 #include <string>
@@ -13,8 +14,9 @@ namespace montecarta::experiments {
 /// The errors of the increments of poses over windows of time. Windows do not overlap. The cells
 /// are those of the poses with each window, e.g. odometry.10s. The covariance of an increment is
 /// what was added in its window, if the errors of the estimates add up independently, as those of
-/// odometry (STATISTICS (19.6)). If estimates were corrected, so that the file has no such
-/// covariance, it is the bound (19.5) that the increment's error cannot exceed.
+/// odometry (STATISTICS (19.6)). If those of an estimator were corrected, so that its files have no
+/// such covariance, it is the bound (19.5) that the increment's error cannot exceed, in all
+/// windows.
 class Increments final : public EstimateSource {
  public:
   /// `options` has the convention, the windows and the match of times. Throws StudyError if the
@@ -39,20 +41,22 @@ class Increments final : public EstimateSource {
   bool has_errors() const override { return true; }
   TextPairs contents() const override { return poses_->contents(); }
   std::vector<std::string> notes() const override;
-  /// Whether covariances are bounds.
-  bool are_bounded() const { return are_bounded_; }
+  /// {cell} Whether covariances are bounds.
+  std::vector<bool> are_bounded() const;
 
  private:
-  bool are_corrected() const;
+  void survey_poses();
+  bool is_corrected(std::size_t estimator) const;
   std::size_t of_poses(std::size_t cell) const { return cell / windows_.size(); }
 
   std::unique_ptr<EstimateSource> poses_;
   ErrorConvention convention_;
   TimeMatch match_;
-  std::vector<double> windows_;  ///< [s]
-  bool are_bounded_ = false;
+  std::vector<double> windows_;   ///< [s]
+  std::vector<bool> is_bounded_;  ///< {estimator}
   std::vector<std::string> labels_;
-  mutable TruthUse use_;  ///< notes on truths as they are read
+  mutable TruthUse use_;               ///< notes on truths as they are read
+  std::vector<std::string> mistakes_;  ///< notes on the poses
 };
 
 }  // namespace montecarta::experiments

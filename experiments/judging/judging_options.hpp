@@ -30,7 +30,7 @@ struct JudgingOptions {
       {};  ///< two estimators, the second of which is in place of the truth; or empty
   bool are_innovations = false;              ///< whether the files have innovations alone
   std::vector<double> windows = {};          ///< [s] increments over these are judged; or empty
-  bool bounds_increments = false;            ///< whether their covariances are only bounds
+  std::vector<bool> bounds_increments = {};  ///< {cell} whether their covariances are only bounds
   std::optional<Gates> gates = {};           ///< of the innovations
   std::vector<std::string> components = {};  ///< names of those that are judged; empty: all
   EqualTimes equal_times = EqualTimes::refuse;

@@ -213,10 +213,10 @@ TEST_F(SlowRecompute, TheVerdictInTheFrameOfTheEstimate) {
 // The factors behind the gate of one of two sensors, by other quadrature and interpolation.
 TEST_F(SlowRecompute, TheVerdictBehindAGate) {
   for (const std::string runs : {"12", "60"}) {
-    const auto outcome = run_program("HDF5_USE_FILE_LOCKING= PYTHONPATH=" + kReaders +
-                                     " /usr/bin/python3 -B " + MONTECARTA_SOURCE_DIR +
-                                     "/tests/analysis/check_gates.py " + MONTECARTA_EXECUTABLE +
-                                     " " + folder_.path().string() + " " + runs);
+    const auto outcome =
+        run_program("HDF5_USE_FILE_LOCKING= PYTHONPATH=" + kReaders + " /usr/bin/python3 -B " +
+                    MONTECARTA_SOURCE_DIR + "/tests/analysis/check_gates.py " +
+                    MONTECARTA_EXECUTABLE + " " + folder_.path().string() + " " + runs);
     EXPECT_EQ(outcome.status, 0) << outcome.output;
     EXPECT_THAT(outcome.output, testing::HasSubstr(", 0 differ"));
   }

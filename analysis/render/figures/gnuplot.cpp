@@ -4,16 +4,13 @@
 #include "analysis/study/strips.hpp"
 #include "engine/errors.hpp"
 #include "engine/text/number_text.hpp"
+#include "engine/text/shell_command.hpp"
 #include "engine/text/visible_text.hpp"
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cmath>
-#include <cstdio>
-#include <cstring>
 #include <string_view>
-#include <sys/wait.h>
 
 namespace montecarta::analysis {
 namespace {
@@ -116,29 +113,18 @@ void run_gnuplot(const std::filesystem::path& directory, const std::vector<std::
   std::string command =
       "cd " + shell_quoted(directory.string()) + " && exec " + shell_quoted(program);
   for (const std::string& name : scripts) command += " " + shell_quoted(name) + kNextSession;
-  command += " </dev/null 2>&1";
-  FILE* const output = ::popen(command.c_str(), "re");
-  if (output == nullptr)
-    throw RunError("{}: cannot be started ({})", program, std::strerror(errno));
-  std::string last = "it says nothing";  // the last line that is not empty
-  std::array<char, 512> line{};
-  while (std::fgets(line.data(), line.size(), output) != nullptr) {
-    const std::string_view said(line.data());
-    if (said.find_first_not_of(" \t^\n") != said.npos) last = said.substr(0, said.find('\n'));
-  }
-  const int status = ::pclose(output);
-  constexpr int kNotFound = 127;  // exit status of the shell
-  if (WIFEXITED(status) && WEXITSTATUS(status) == kNotFound) {
+  const CommandOutcome outcome = run_command(command + " 2>&1", program);
+  if (outcome.exit_code == CommandOutcome::kNotFound) {
     throw StudyError(program +
                      ": not found (it draws the figures): install it, on Debian with 'apt-get "
                      "install gnuplot-nox'");
   }
-  if (status == 0) return;
+  if (outcome.is_done()) return;
   std::string all;
   for (const std::string& name : scripts) all += (all.empty() ? "" : ", ") + name;
   throw RunError(
       "{}: gnuplot failed at {} ({}): draw them again by gnuplot, and look at what it says",
-      directory, all, last);
+      directory, all, outcome.last_line());
 }
 
 std::string gnuplot_quoted(const std::string& text) {

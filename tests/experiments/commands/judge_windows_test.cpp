@@ -8,7 +8,11 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
+#include <string>
+#include <vector>
 
 namespace montecarta::experiments {
 namespace {
@@ -126,6 +130,44 @@ TEST_F(JudgeWindows, HaveABoundWhereEstimatesAreCorrected) {
   EXPECT_THAT(write_filter(9.0), HasSubstr("odometry.1s is optimistic"));
 }
 
+// A filter with a map beside odometry takes no covariance from it.
+TEST_F(JudgeWindows, OfOneEstimatorAreBoundedAndOfAnotherNot) {
+  write_odometry("world");
+  write("odometry_0.csv", text_of("odometry.csv"));
+  std::string filter = "time_s,x_m,y_m,heading_rad,cov_0_0,cov_1_1,cov_2_2\n";
+  for (int k = 0; k < 12; ++k)
+    filter += std::to_string(k) + "," + std::to_string(k) + ",0,0,1,1,1\n";
+  write("filter_0.csv", filter);
+  const auto covariances = [&](const std::vector<std::string>& files) {
+    std::vector<std::string> words = {"judge"};
+    words.insert(words.end(), files.begin(), files.end());
+    const Called called = call_with(words, {"--truth", "truth.csv", "--error", "world", "--windows",
+                                            "1,5", "-o", "mine.h5", "--force"});
+    EXPECT_EQ(called.code, 0) << called.err;
+    const ResultFile file(folder_ / "mine.h5");
+    std::map<std::string, double> first;
+    for (const StoredCell& cell : file.cells()) {
+      std::vector<double> P(9 * file.times().size());
+      file.read(cell, "error_covariance", 0, std::span(P));
+      first[cell.label] = *std::ranges::find_if(P, [](double value) { return !std::isnan(value); });
+    }
+    if (files.size() > 1) {
+      EXPECT_THAT(called.out,
+                  AllOf(HasSubstr("increments of odometry.1s, odometry.5s is what was added"),
+                        HasSubstr("no covariance for increments of filter.1s, filter.5s")));
+    }
+    return first;
+  };
+  const auto together = covariances({"odometry_0.csv", "filter_0.csv"});
+  EXPECT_EQ(together.size(), 4u);
+  for (const std::string file : {"odometry", "filter"}) {
+    for (const auto& [cell, P] : covariances({file + "_0.csv"})) {
+      ASSERT_EQ(together.count(cell), 1u) << cell;
+      EXPECT_EQ(together.at(cell), P) << cell;
+    }
+  }
+}
+
 TEST_F(JudgeWindows, AreOfPosesAndIncrease) {
   write_odometry("body");
   EXPECT_THAT(judged({"--windows", "1,5"}).err, HasSubstr("--error is missing"));
@@ -133,6 +175,16 @@ TEST_F(JudgeWindows, AreOfPosesAndIncrease) {
               HasSubstr("--windows 5,1: not a list of increasing lengths"));
   EXPECT_THAT(judged({"--error", "body", "--windows", "1", "--anchor", "yaw"}).err,
               HasSubstr("--anchor: not beside --windows"));
+  std::string degrees = "time_s,x_m,y_m,heading_rad,cov_0_0,cov_1_1,cov_2_2\n", truths = degrees;
+  for (int k = 0; k < 30; ++k) {
+    const std::string pose = std::to_string(k) + "," + std::to_string(-k) + ",0,180";
+    degrees += pose + ",1,1,1\n";
+    truths += pose + ",0,0,0\n";
+  }
+  write("odometry.csv", degrees);
+  write("truth.csv", truths);
+  EXPECT_THAT(judged({"--error", "world", "--windows", "1"}).err,
+              HasSubstr("heading_rad 180 (more than two turns; it is judged as rad)"));
   write("odometry.csv", "time_s,a,cov_a_a\n1,0,1\n2,0,1\n");
   write("truth.csv", "time_s,a\n1,0\n2,0\n");
   EXPECT_THAT(judged({"--windows", "1"}).err, HasSubstr("--windows is for poses"));

@@ -390,6 +390,22 @@ TEST(ConventionHints, NameMistakesOfStatesWithOneUnit) {
   EXPECT_EQ(hint_on_layout(std::vector<std::string>{"s", "s"}, P, 1e6 * P), "");
 }
 
+// The variance of a heading in degrees hides in the NEES of a pose, of which a few runs show that
+// of the positions alone.
+TEST(ConventionHints, NameMistakesOfAPartThatIsFarTooSmall) {
+  const StateShape shape = plane_shape();
+  ConventionHint hint = hint_of(shape, ErrorConvention::world, 1);
+  EXPECT_THAT(in_words(hint, "mine", "world"), Not(HasSubstr("degrees")));
+  const Eigen::MatrixXd P = 0.25 * Eigen::MatrixXd::Identity(3, 3);
+  Eigen::MatrixXd as_written = P;
+  as_written(2, 2) *= std::pow(180.0 / kPi, 2);
+  hint.mistakes.add(misread_errors(P, as_written, 1), shape.units);
+  const std::string in_degrees = "with angles in degrees, squared errors of lengths are";
+  EXPECT_THAT(in_words(hint, "mine", "world"), HasSubstr(in_degrees));
+  EXPECT_THAT(in_words(hint, "mine", "world", true), HasSubstr(in_degrees));
+  EXPECT_THAT(in_words(hint, "mine", "world", true), Not(HasSubstr("would pass")));
+}
+
 TEST(ConventionHints, NameConventionsThatBringTheErrorsFarNearer) {
   ConventionHint hint = hint_of(plane_shape(), ErrorConvention::body, 1);
   const auto with_ratio = [&](double ratio) {
@@ -403,6 +419,8 @@ TEST(ConventionHints, NameConventionsThatBringTheErrorsFarNearer) {
   EXPECT_THAT(in_words(hint, "mine", "world"),
               HasSubstr("far nearer to 1 than the ratio 182 of world is that of body"));
   EXPECT_THAT(in_words(hint, "mine", "body"), Not(HasSubstr("far nearer")));
+  hint.by_convention = {with_ratio(0.0), with_ratio(0.0)};
+  EXPECT_THAT(in_words(hint, "mine", "world"), Not(HasSubstr("far nearer")));
 }
 
 TEST(ConventionHints, SayWhatCannotBeToldApart) {
