@@ -11,6 +11,14 @@
 
 namespace montecarta::engine {
 
+// Files that are compiled for different registers may be linked into one program (as in the Debian
+// package): their lanes are different types, so that the linker takes no function for another.
+#ifdef __AVX512F__
+inline namespace avx512 {
+#else
+inline namespace narrower {
+#endif
+
 /// The lanes for which a condition holds.
 struct LaneMask;
 
@@ -137,5 +145,7 @@ inline bool any(const LaneMask& mask) {
   for (const auto& part : mask.part) found = found || xsimd::any(part);
   return found;
 }
+
+}  // inline namespace
 
 }  // namespace montecarta::engine

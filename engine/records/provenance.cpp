@@ -16,21 +16,6 @@
 namespace montecarta::engine {
 namespace {
 
-/// The widest registers for which the program was compiled. Results do not depend on it.
-std::string instruction_set() {
-#if defined(__AVX512F__)
-  return "AVX-512";
-#elif defined(__AVX2__)
-  return "AVX2";
-#elif defined(__SSE2__)
-  return "SSE2";
-#elif defined(__ARM_NEON)
-  return "NEON";
-#else
-  return "none";
-#endif
-}
-
 /// The C library that provides exp(), sin() and the like.
 std::string libm() {
 #if defined(__GLIBC__)
@@ -61,6 +46,20 @@ std::string cpu() {
 }  // namespace
 
 std::string program_version() { return MONTECARTA_VERSION; }
+
+std::string instruction_set() {
+#if defined(__AVX512F__)
+  return "AVX-512";
+#elif defined(__AVX2__)
+  return "AVX2";
+#elif defined(__SSE2__)
+  return "SSE2";
+#elif defined(__ARM_NEON)
+  return "NEON";
+#else
+  return "none";
+#endif
+}
 
 TextPairs collect_provenance() {
   utsname system{};

@@ -49,7 +49,7 @@ int dispatch(const std::vector<std::string>& words) {
     return kDone;
   }
   if (words[0] == "--version") {
-    std::cout << "montecarta " << program_version() << "\n";
+    std::cout << "montecarta " << program_version() << " (" << instruction_set() << ")\n";
     return kDone;
   }
   const bool help_first = words[0] == "help";

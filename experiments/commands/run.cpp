@@ -14,6 +14,7 @@
 #include "experiments/commands/output_path.hpp"
 #include "experiments/commands/stored_result.hpp"
 #include "experiments/commands/summed_study.hpp"
+#include "experiments/files/files.hpp"
 
 #include <filesystem>
 #include <iostream>
@@ -30,7 +31,7 @@ ProgressStyle progress_of(const Arguments& arguments) {
 
 /// The command line that continues this run after an interruption.
 std::string resuming_command(const Arguments& arguments) {
-  std::string line = std::filesystem::read_symlink("/proc/self/exe").string() + " run";
+  std::string line = program_path().string() + " run";
   for (const std::string& word : arguments.words()) {
     if (word == "--force" || word == "--resume") continue;
     const std::size_t value = word.starts_with("--shard=") ? word.find('=') + 1 : 0;

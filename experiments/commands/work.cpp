@@ -11,6 +11,7 @@
 #include "experiments/commands/shared_work.hpp"
 #include "experiments/commands/stored_result.hpp"
 #include "experiments/commands/summed_study.hpp"
+#include "experiments/files/files.hpp"
 #include "experiments/study/make_plan.hpp"
 #include "experiments/text/words.hpp"
 
@@ -66,7 +67,7 @@ ShardFolder folder_of(const Arguments& arguments) {
                            {.runs = plan.runs,
                             .cells = plan.cells.size(),
                             .shards = *shards,
-                            .program = fs::read_symlink("/proc/self/exe").string(),
+                            .program = program_path().string(),
                             .settings = settings_beside_text(study)});
 }
 

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cstring>
 #include <fstream>
 #include <set>
 #include <system_error>
@@ -18,10 +19,8 @@ namespace {
 namespace fs = std::filesystem;
 
 std::array<fs::path, 3> shipped_roots() {
-  std::error_code none;
-  const fs::path executable = fs::read_symlink("/proc/self/exe", none);
-  return {executable.parent_path().parent_path() / "share" / "montecarta", MONTECARTA_INSTALLED_DIR,
-          MONTECARTA_SHIPPED_DIR};
+  return {program_path().parent_path().parent_path() / "share" / "montecarta",
+          MONTECARTA_INSTALLED_DIR, MONTECARTA_SHIPPED_DIR};
 }
 
 bool has_letter(std::string_view text) {
@@ -32,6 +31,15 @@ bool has_letter(std::string_view text) {
 constexpr const char* kDecimalPoints = "write decimal points, and commas between the columns";
 
 }  // namespace
+
+fs::path program_path() {
+  std::error_code none;
+  const fs::path program = fs::read_symlink("/proc/self/exe", none);
+  const std::string folder = program.parent_path().string();
+  if (!folder.ends_with(formatted("/{}", kWiderFolder))) return program;
+  const std::string prefix = folder.substr(0, folder.size() - std::strlen(kWiderFolder));
+  return fs::path(prefix) / "bin" / program.filename();
+}
 
 std::optional<fs::path> shipped_file(const std::string& folder, const std::string& name) {
   for (const fs::path& root : shipped_roots()) {

@@ -12,6 +12,14 @@
 
 namespace montecarta::experiments {
 
+/// Folder of an installation, beside `bin`, that has a second program for wider registers
+/// (package/wider_program).
+inline constexpr const char* kWiderFolder = "lib/montecarta/x86-64-v4";
+
+/// The program that is running, as a user starts it: the one in `bin` also if that one has started
+/// the program of kWiderFolder.
+std::filesystem::path program_path();
+
 /// A file that is shipped with montecarta, e.g. ("worlds", "web_loop.csv"): beside the installed
 /// executable (../share/montecarta), otherwise in the source tree of this build. nullopt if there
 /// is none.

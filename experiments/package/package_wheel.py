@@ -6,9 +6,10 @@ It needs CMake, Ninja, a compiler and the libraries of .ci/packages.txt, and dow
     pip install . --config-settings=build=build # takes the program of that folder
     pip wheel . --config-settings=libraries=bundled  # for machines without these libraries
 
-The program is built for every x86-64-v3 processor, or on ARM for armv8-a. A wheel with bundled
-libraries has all that the program links but the C library, with their licences; it is made on
-Debian, by patchelf. Without that setting the libraries are not in the wheel.
+The program is built for every x86-64-v3 processor, or on ARM for armv8-a. The wheel of a build by
+the preset `package` has a second one for x86-64-v4, which the first starts where it can run. A
+wheel with bundled libraries has all that its programs link but the C library, with their licences;
+it is made on Debian, by patchelf. Without that setting the libraries are not in the wheel.
 """
 import base64
 import hashlib
@@ -25,7 +26,11 @@ import zipfile
 
 # The C library, which belongs to the system.
 GLIBC = re.compile(r"(lib(c|m|dl|rt|pthread|resolv|util|mvec)|ld-linux.*)\.so\.\d+")
+# Of the lines of ldd, the name and the path of a library.
+LINKED = re.compile(r"^\s*(\S+) => (.+?)(?: \(0x\w+\))?$", re.MULTILINE)
 LIBRARIES = "lib/montecarta"  # where bundled libraries are, beside the folder bin
+# The second, for wider registers, is in the builds of the preset `package` only.
+PROGRAMS = ("bin/montecarta", "lib/montecarta/x86-64-v4/montecarta")
 
 SOURCE = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
 
@@ -111,13 +116,15 @@ def _is_bundled(settings):
 
 
 def _bundle(prefix):
-    """Copies the libraries that the program links, and lets it find them where it is installed.
-    Returns {package: file} of their licences."""
-    program, folder = os.path.join(prefix, "bin/montecarta"), os.path.join(prefix, LIBRARIES)
-    os.makedirs(folder)
+    """Copies the libraries that the programs link, and lets these find them where they are
+    installed. Returns {package: file} of their licences."""
+    programs = [os.path.join(prefix, name) for name in PROGRAMS
+                if os.path.exists(os.path.join(prefix, name))]
+    folder = os.path.join(prefix, LIBRARIES)
+    os.makedirs(folder, exist_ok=True)
     licences = {}
-    linked = subprocess.run(["ldd", program], check=True, capture_output=True, text=True).stdout
-    for name, path in re.findall(r"^\s*(\S+) => (.+?)(?: \(0x\w+\))?$", linked, re.MULTILINE):
+    linked = subprocess.run(["ldd", *programs], check=True, capture_output=True, text=True).stdout
+    for name, path in sorted(set(LINKED.findall(linked))):
         if GLIBC.fullmatch(name):
             continue
         if not os.path.exists(path):
@@ -127,8 +134,10 @@ def _bundle(prefix):
         subprocess.run(["patchelf", "--set-rpath", "$ORIGIN", copy], check=True)
         package = _package_of(os.path.realpath(path))
         licences[package] = f"/usr/share/doc/{package}/copyright"
-    subprocess.run(["patchelf", "--force-rpath", "--set-rpath", f"$ORIGIN/../{LIBRARIES}", program],
-                   check=True)
+    for program in programs:
+        to_libraries = os.path.relpath(folder, os.path.dirname(program))
+        subprocess.run(["patchelf", "--force-rpath", "--set-rpath", f"$ORIGIN/{to_libraries}",
+                        program], check=True)
     return licences
 
 

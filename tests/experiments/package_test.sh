@@ -66,6 +66,29 @@ done
 h5diff same_montecarta.h5 same_my_montecarta.h5 /cells /cells ||
   fail "other bits in the program of one's own"
 
+# The package of the preset `package` has a second program for wider registers. The one that fits
+# runs, both compute the same bits, and the environment keeps the narrower one.
+registers_of() { sed -n 's/.*(\(.*\))/\1/p' <<<"$("$@" --version)"; }
+if [ -e "$folder/root/usr/lib/montecarta/x86-64-v4/montecarta" ]; then
+  fitting=AVX2
+  ! grep -qw avx512vl /proc/cpuinfo || fitting=AVX-512
+  [ "$(registers_of montecarta)" = $fitting ] || fail "not $fitting: $(montecarta --version)"
+  narrow=(env MONTECARTA_ARCH=x86-64-v3 montecarta)
+  [ "$(registers_of "${narrow[@]}")" = AVX2 ] || fail "not kept: $("${narrow[@]}" --version)"
+  code=0
+  MONTECARTA_ARCH=avx2 montecarta --version 2>refused || code=$?
+  if [ $code -ne 2 ] || ! grep -q "say x86-64-v3" refused; then
+    fail "MONTECARTA_ARCH=avx2: $(cat refused)"
+  fi
+  studied=(run "$source/fingerprints/every_filter.ini" --runs 0:1 --quiet)
+  montecarta "${studied[@]}" -o fitting.h5 || fail "every filter, $fitting"
+  "${narrow[@]}" "${studied[@]}" -o narrow.h5 || fail "every filter, AVX2"
+  h5diff fitting.h5 narrow.h5 /cells /cells || fail "other bits with other registers"
+  grep -q $fitting <<<"$(montecarta info fitting.h5)" || fail "info: $(montecarta info fitting.h5)"
+elif grep -q '^MONTECARTA_PACKAGE:.*=ON' "$build/CMakeCache.txt" && [ "$(uname -m)" = x86_64 ]; then
+  fail "no program for x86-64-v4"
+fi
+
 # Completion of commands, options and shipped studies.
 complete_words() {
   COMP_WORDS=(montecarta "$@") COMP_CWORD=$# COMPREPLY=()
@@ -89,4 +112,8 @@ if command -v qemu-x86_64 >/dev/null && [ "$(uname -m)" = x86_64 ]; then
   qemu-x86_64 -cpu Nehalem "$folder/root/usr/bin/montecarta" --version 2>old || code=$?
   [ $code -eq 2 ] || fail "exit code on an old processor: $code"
   grep -q 'this processor lacks' old || fail "on an old processor: $(cat old)"
+  if [ -e "$folder/root/usr/lib/montecarta/x86-64-v4/montecarta" ]; then
+    registers=$(registers_of qemu-x86_64 -cpu Haswell "$folder/root/usr/bin/montecarta")
+    [ "$registers" = AVX2 ] || fail "on a processor without AVX-512: $registers"
+  fi
 fi
