@@ -28,6 +28,12 @@ class Benchmark : public Program {
          "--cell",
          "external label=mine command='" MONTECARTA_SCRIPTED_PROGRAM " " + mode + " mine.txt'"});
   }
+  /// The line of a text that begins with `begin`, from its first number on.
+  static std::string numbers_of(const std::string& text, const std::string& begin) {
+    const std::size_t line = ("\n" + text).find("\n" + begin);
+    const std::string found = text.substr(line, text.find('\n', line) - line).substr(begin.size());
+    return found.substr(found.find_first_of("0123456789"));
+  }
   /// An entry without what is no part of the result.
   std::string result_of(const std::string& entry) const {
     std::string text = text_of(entry);
@@ -225,6 +231,38 @@ TEST_F(Benchmark, ComparesAResultWithAnArchiveRunByRun) {
   EXPECT_THAT(called.out, ContainsRegex("NEES ratio +a +0.00 +1.00 +0.0 %"));
   EXPECT_THAT(called.out, ContainsRegex("position_rmse \\[m\\] +b "));
   expect_refused({"compare", "out/corridor_easy/a.h5", "--entries", "out"}, "without --archive");
+}
+
+TEST_F(Benchmark, ComparesFewerRunsWithTheSameOnesOfTheArchive) {
+  ASSERT_EQ(run("out", {"--world", "corridor_easy"}).code, 0);
+  ASSERT_EQ(call({"benchmark", "few", "--runs", "20", "--cell", "ekf_slam label=mine", "--world",
+                  "corridor_easy"})
+                .code,
+            0);
+  const Called called =
+      call({"compare", "few/corridor_easy/mine.h5", "--archive", "--entries", "out"});
+  // a is the same filter: ratio, interval and RMSE of the same 20 runs are the same, of 70 are not.
+  const auto without_cpu = [](const std::string& numbers) {
+    return numbers.substr(0, numbers.find("  ", numbers.find(']') + 8));
+  };
+  EXPECT_EQ(without_cpu(numbers_of(called.out, "a ")),
+            without_cpu(numbers_of(called.out, "mine (yours) ")))
+      << called.out;
+  EXPECT_THAT(called.out, HasSubstr("over the 20 runs that yours has too"));
+  EXPECT_THAT(called.out, HasSubstr("over all 70 runs"));
+  EXPECT_THAT(called.out, HasSubstr("Runs in each comparison: 20."));
+}
+
+TEST_F(Benchmark, SaysBeforeTheTablesWhereYoursIsBetter) {
+  ASSERT_EQ(run("out", {"--world", "corridor_hard"}).code, 0);
+  const Called called =
+      call({"compare", "out/corridor_hard/a.h5", "--archive", "--entries", "out"});
+  EXPECT_THAT(called.out, StartsWith("a against a: undecided: position_rmse, heading_rmse, "
+                                     "NEES ratio.\na against b: position_rmse better"));
+  // Dead reckoning has the larger error: yours minus that is negative, and most runs are won.
+  EXPECT_THAT(called.out, ContainsRegex("against +a minus that \\[95 %\\] +ratio +runs a won"));
+  EXPECT_THAT(called.out,
+              ContainsRegex("position_rmse \\[m\\] +b +-[0-9].* 0\\.[0-9]+ +[89][0-9]"));
 }
 
 TEST_F(Benchmark, DoesNotCompareAcrossWorldsOrSeeds) {
