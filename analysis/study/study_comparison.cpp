@@ -210,7 +210,10 @@ std::string sentence_of(std::span<const CellComparison> rows, const Comparisons&
   }
   if (!undecided.empty())
     undecided = (decided.empty() ? "undecided: " : "; undecided: ") + undecided;
-  return formatted("{} against {}: {}{}.", rows.front().cell, all.baseline, decided, undecided);
+  const std::string& cell = rows.front().cell;
+  const bool is_turned = all.seen_from == SeenFrom::baseline;
+  return formatted("{} against {}: {}{}.", is_turned ? all.baseline : cell,
+                   is_turned ? cell : all.baseline, decided, undecided);
 }
 
 /// Adds, for each cell with failures, a note on how they count.
@@ -291,7 +294,8 @@ Comparisons compare_cells(const StudyAnalysis& study, const std::string& baselin
       pairs.emplace_back(&cell, score);
     }
   }
-  Comparisons comparisons{baseline, study.level, std::vector<CellComparison>(pairs.size())};
+  Comparisons comparisons{baseline, study.level, std::vector<CellComparison>(pairs.size()),
+                          SeenFrom::cell};
   parallel.for_each(pairs.size(), [&](std::size_t i) {
     comparisons.rows[i] = compare_pair(*pairs[i].first, base, *pairs[i].second, study.level);
   });
@@ -299,6 +303,20 @@ Comparisons compare_cells(const StudyAnalysis& study, const std::string& baselin
     return row.pairs + row.without + row.baseline_without == 0;
   });
   adjust(comparisons.rows);
+  return comparisons;
+}
+
+Comparisons seen_from_baseline(Comparisons comparisons) {
+  comparisons.seen_from = SeenFrom::baseline;
+  for (CellComparison& row : comparisons.rows) {
+    std::swap(row.without, row.baseline_without);
+    std::swap(row.mean, row.baseline_mean);
+    row.difference = 0.0 - row.difference;  // 0 remains without a sign
+    row.interval = {0.0 - row.interval.upper, 0.0 - row.interval.lower};
+    if (row.score->has_ratio) row.ratio = row.mean / row.baseline_mean;
+    row.wins = seen_from_the_other(row.wins);
+    std::swap(row.rank.positive, row.rank.negative);
+  }
   return comparisons;
 }
 
@@ -374,19 +392,21 @@ std::string pairs_of_all_rows(const Comparisons& comparisons) {
 
 TextTable difference_table(const Comparisons& comparisons) {
   TextTable table{.keys = 2};
-  const std::string heading_of_difference =
-      formatted("difference [{}]", level_text(comparisons.level));
+  const bool is_turned = comparisons.seen_from == SeenFrom::baseline;
+  const std::string& own = comparisons.baseline;
+  const std::string heading_of_difference = formatted(
+      "{} [{}]", is_turned ? own + " minus that" : "difference", level_text(comparisons.level));
   const bool have_own_pairs = pairs_of_all_rows(comparisons).empty();
   for (const CellComparison& row : comparisons.rows) {
     const double difference = row.difference / row.expectation;
     std::vector<TextTable::Entry> entries = {
         {"what", heading(name_in_tables(*row.score), row.score->units), Align::left},
-        {"cell", row.cell, Align::left},
+        {is_turned ? "against" : "cell", row.cell, Align::left},
         {heading_of_difference, row.has_heavy_tail
                                     ? readable(difference) + " (heavy tail)"
                                     : with_interval(difference, shown_interval(row))},
         {"ratio", readable(row.ratio)},
-        {"runs won", percent(row.wins.share())}};
+        {is_turned ? formatted("runs {} won", own) : "runs won", percent(row.wins.share())}};
     if (have_own_pairs) entries.push_back({"runs", pairs_text(row), Align::left});
     table.add(entries);
   }

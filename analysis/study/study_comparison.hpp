@@ -55,13 +55,20 @@ struct CellComparison {
   std::string verdict(double level) const;
 };
 
+/// The cell whose numbers are compared with those of the other: that of the row, or the baseline.
+enum class SeenFrom { cell, baseline };
+
 /// Comparisons of every other cell with a baseline.
 struct Comparisons {
   std::string baseline;
   /// Level of intervals; tests are at 1 - level, by Holm over the whole table.
   double level = kUsualLevel;
   std::vector<CellComparison> rows;  ///< comparisons score by score, in the order of the cells
+  SeenFrom seen_from = SeenFrom::cell;
 };
+
+/// The comparisons of a baseline with every other cell, each the other way round.
+Comparisons seen_from_baseline(Comparisons comparisons);
 
 /// A number that is negative if `left` is the better of two values of a score.
 double disadvantage(const Score& score, double left, double right);

@@ -147,4 +147,10 @@ void ResultWriter::finish() {
   result_.file.rename(path_, result_.existing);
 }
 
+void ResultWriter::discard() {
+  if (is_finished()) return;
+  std::error_code ignored;  // another attempt that was complete may have removed it
+  std::filesystem::remove(result_.file.path(), ignored);
+}
+
 }  // namespace montecarta::engine

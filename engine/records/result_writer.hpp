@@ -66,6 +66,8 @@ class ResultWriter {
   void suspend();
   /// Flushes and renames OUT.h5.part to OUT.h5. Throws std::logic_error if a run is missing.
   void finish();
+  /// Removes the unfinished file, for work without any result. Files of other attempts remain.
+  void discard();
 
  private:
   ResultWriter(const std::filesystem::path& path, OpenResult result, const StudyPlan& plan);

@@ -96,6 +96,13 @@ void run_worker(Session& session) {
   session.spare_threads.gain_one();
 }
 
+/// Removes the file of a session that ended by an error, if it began the work and completed no run:
+/// nothing is lost, and the work does not stand in the way of another study of that name.
+void discard_if_without_result(const StudyPlan& plan, const RunCounts& before,
+                               ResultWriter& writer) {
+  if (before.ended() == 0 && stored_counts(plan, writer).complete == 0) writer.discard();
+}
+
 /// Runs until no run is missing or a stop is requested.
 void run_missing(const StudyPlan& plan, const RunOptions& options, ResultWriter& writer,
                  StopRequest& stop, Progress& progress) {
@@ -155,7 +162,12 @@ RunOutcome run_study(const StudyPlan& plan, const RunOptions& options) {
     if (left) *left -= stopwatch.seconds();
     Progress progress(options.quiet ? ProgressStyle::none : options.progress, before);
     const Watch watch(interruption, left, stop, progress);
-    run_missing(plan, options, writer, stop, progress);
+    try {
+      run_missing(plan, options, writer, stop, progress);
+    } catch (...) {
+      discard_if_without_result(plan, before, writer);
+      throw;
+    }
   }
   RunOutcome outcome{.counts = stored_counts(plan, writer)};
   if (outcome.counts.missing > 0) outcome.stopped = stop.reason();

@@ -9,6 +9,7 @@
 #include "engine/formatted.hpp"
 #include "engine/records/fingerprint.hpp"
 #include "experiments/benchmark/benchmark_study.hpp"
+#include "experiments/external/external_filter.hpp"
 #include "experiments/files/files.hpp"
 #include "experiments/text/words.hpp"
 
@@ -132,6 +133,8 @@ TextPairs made_by(const ResultFile& result) {
   return kept;
 }
 
+constexpr std::string_view kSha256Of = "sha256 of ";
+
 std::string text_of_blocks(const std::vector<std::uint64_t>& blocks) {
   std::vector<std::string> words;
   for (const std::uint64_t block : blocks) words.push_back(formatted("{:x}", block));
@@ -151,6 +154,26 @@ std::vector<std::uint64_t> blocks_in(const std::string& text) {
 }
 
 }  // namespace
+
+TextPairs provenance_of_files(const TextPairs& program_files) {
+  TextPairs provenance;
+  for (const auto& [name, sha] : program_files)
+    provenance.emplace_back(std::string(kSha256Of) + name, sha);
+  return provenance;
+}
+
+TextPairs program_files_in(const TextPairs& provenance) {
+  TextPairs files;
+  for (const auto& [name, value] : provenance) {
+    if (name.starts_with(kSha256Of)) files.emplace_back(name.substr(kSha256Of.size()), value);
+  }
+  return files;
+}
+
+double cpu_seconds_of(const CellAnalysis& cell) {
+  const bool is_program = starts_program(cell.filter);
+  return is_program ? kNaN : cell.over_runs("cpu_seconds").mean;
+}
 
 ArchivedVerdict verdict_in_short(const Verdict& verdict) {
   return {.answer = verdict.answer,
@@ -200,6 +223,7 @@ ArchiveEntry entry_of(const ResultFile& result, const std::string& world, const 
       .label = analysed.label,
       .filter = analysed.filter,
       .cell = cell,
+      .program_files = program_files_in(result.provenance()),
       .study_sha256 = result.study_sha256(),
       .drives_sha256 = drives_sha256(result.study_text()),
       .seed = result.seed(),
@@ -207,7 +231,7 @@ ArchiveEntry entry_of(const ResultFile& result, const std::string& world, const 
       .failed = analysed.failures.size(),
       .first_failure = {},
       .verdict = verdict_in_short(analysed.verdict),
-      .cpu_seconds = analysed.over_runs("cpu_seconds").mean,
+      .cpu_seconds = cpu_seconds_of(analysed),
       .made_by = made_by(result),
       .blocks = block_fingerprints(fingerprints_in_sums(result, result.cells().front())),
       .scores = scores_of_runs(analysed, study.runs_here)};
@@ -222,30 +246,31 @@ std::string text_of(const ArchiveEntry& entry) {
     scores[kArchivedScores.at(k)] = encoded(entry.scores.at(k));
   Json made_by = Json::object();
   for (const auto& [name, value] : entry.made_by) made_by[name] = value;
-  const Json json = {{"montecarta_archive", kFormat},
-                     {"world", entry.world},
-                     {"label", entry.label},
-                     {"filter", entry.filter},
-                     {"cell", entry.cell},
-                     {"study_sha256", entry.study_sha256},
-                     {"drives_sha256", entry.drives_sha256},
-                     {"seed", entry.seed},
-                     {"runs", entry.runs},
-                     {"failed", entry.failed},
-                     {"first_failure", entry.first_failure},
-                     {"made_by", std::move(made_by)},
-                     {"cpu_seconds", rounded(entry.cpu_seconds, 3)},
-                     {"verdict",
-                      {{"answer", analysis::name_of(verdict.answer)},
-                       {"slight", verdict.is_slight},
-                       {"within", verdict.within},
-                       {"level", verdict.level},
-                       {"nees_ratio", rounded(verdict.ratio, kDigits)},
-                       {"interval", json_of_pair(verdict.interval)},
-                       {"families", verdict.families}}},
-                     {"runs_of_block", kRunsOfArchivedBlock},
-                     {"blocks", text_of_blocks(entry.blocks)},
-                     {"scores", std::move(scores)}};
+  Json json = {{"montecarta_archive", kFormat},
+               {"world", entry.world},
+               {"label", entry.label},
+               {"filter", entry.filter},
+               {"cell", entry.cell},
+               {"study_sha256", entry.study_sha256},
+               {"drives_sha256", entry.drives_sha256},
+               {"seed", entry.seed},
+               {"runs", entry.runs},
+               {"failed", entry.failed},
+               {"first_failure", entry.first_failure},
+               {"made_by", std::move(made_by)},
+               {"cpu_seconds", rounded(entry.cpu_seconds, 3)},
+               {"verdict",
+                {{"answer", analysis::name_of(verdict.answer)},
+                 {"slight", verdict.is_slight},
+                 {"within", verdict.within},
+                 {"level", verdict.level},
+                 {"nees_ratio", rounded(verdict.ratio, kDigits)},
+                 {"interval", json_of_pair(verdict.interval)},
+                 {"families", verdict.families}}},
+               {"runs_of_block", kRunsOfArchivedBlock},
+               {"blocks", text_of_blocks(entry.blocks)},
+               {"scores", std::move(scores)}};
+  for (const auto& [name, sha] : entry.program_files) json["program_files"][name] = sha;
   return json.dump(1, ' ', true, Json::error_handler_t::replace) + "\n";
 }
 
@@ -290,6 +315,7 @@ ArchiveEntry entry_in(const Json& json) {
                      .label = json.at("label"),
                      .filter = json.at("filter"),
                      .cell = json.at("cell"),
+                     .program_files = {},
                      .study_sha256 = json.at("study_sha256"),
                      .drives_sha256 = json.at("drives_sha256"),
                      .seed = json.at("seed"),
@@ -303,6 +329,8 @@ ArchiveEntry entry_in(const Json& json) {
                      .scores = {}};
   for (const auto& [name, value] : json.at("made_by").items())
     entry.made_by.emplace_back(name, value);
+  const Json program_files = json.value("program_files", Json::object());
+  for (const auto& [name, sha] : program_files.items()) entry.program_files.emplace_back(name, sha);
   for (std::size_t k = 0; k < kArchivedScores.size(); ++k)
     entry.scores.at(k) = decoded(json.at("scores").at(kArchivedScores.at(k)).get<std::string>());
   expect_whole_entry(entry);

@@ -26,6 +26,7 @@ inline constexpr std::uint64_t kRunsOfArchivedBlock = 64;
 /// The scores that are archived of every run.
 inline constexpr std::array kArchivedScores = {"position_rmse", "heading_rmse", "nees"};
 inline constexpr std::size_t kArchivedPositionRmse = 0;
+inline constexpr std::size_t kArchivedNees = 2;
 
 /// {score}{run} Scores as archived() keeps them; NaN where a run failed.
 using ArchivedScores = std::array<std::vector<double>, kArchivedScores.size()>;
@@ -48,12 +49,14 @@ struct ArchiveEntry {
   std::string label = {};   ///< label of the cell, and name of the file
   std::string filter = {};  ///< name of the filter in study files
   std::string cell = {};    ///< value of `cell` in a study file that gives this filter
+  /// Files that the command of an external program names, with their SHA-256.
+  std::vector<std::pair<std::string, std::string>> program_files = {};
   std::string study_sha256 = {};
   std::string drives_sha256 = {};
   std::uint64_t seed = 0, runs = 0, failed = 0;
   std::string first_failure = {};  ///< reason of the first failed run; empty if none failed
   ArchivedVerdict verdict = {};
-  double cpu_seconds = kNaN;  ///< [s] mean processor time of a run, which is no part of the result
+  double cpu_seconds = kNaN;  ///< [s] cpu_seconds_of(), which is no part of the result
   std::vector<std::pair<std::string, std::string>> made_by = {};  ///< version, compiler, processor
   std::vector<std::uint64_t> blocks = {};  ///< {block} fingerprint of its runs
   ArchivedScores scores = {};
@@ -61,6 +64,13 @@ struct ArchiveEntry {
   /// Mean over the complete runs of the RMSE of the position [m].
   double position_rmse() const;
 };
+
+/// What the provenance of a result has about the files of its program, and back.
+TextPairs provenance_of_files(const TextPairs& program_files);
+TextPairs program_files_in(const TextPairs& provenance);
+
+/// [s] Mean processor time of a run; NaN for an external program, whose time is not measured.
+double cpu_seconds_of(const CellAnalysis& cell);
 
 ArchivedVerdict verdict_in_short(const Verdict& verdict);
 

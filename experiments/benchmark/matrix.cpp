@@ -13,6 +13,9 @@
 namespace montecarta::experiments {
 namespace {
 
+/// NEES ratio from which on a number says no more than that runs diverged.
+constexpr double kDiverged = 1e4;
+
 constexpr VerdictClass kClassConsistent = {"consistent", "=", "#b7dfc0"};
 constexpr VerdictClass kClassSlight = {"slightly off", "~", "#f6e3a1"};
 constexpr VerdictClass kClassOptimistic = {"optimistic", "+", "#ef8a76"};
@@ -52,10 +55,6 @@ Matrix::Place place_of(const EntriesByPlace& entries, const BenchmarkFilter& fil
   return place;
 }
 
-std::string ratio_in_matrix(const ArchivedVerdict& verdict) {
-  return verdict.ratio < 100.0 ? readable(verdict.ratio) : compact(std::round(verdict.ratio));
-}
-
 std::string words_of(const ArchivedVerdict& verdict) {
   const std::string name = analysis::name_of(verdict.answer);
   if (verdict.answer == Answer::consistent)
@@ -70,6 +69,11 @@ std::string words_of_world(std::string name) {
 }
 
 }  // namespace
+
+std::string ratio_text(double ratio) {
+  if (std::isnan(ratio)) return "?";
+  return ratio < 100.0 ? readable(ratio) : ratio < kDiverged ? readable(ratio, 2) : "> 1e4";
+}
 
 double relative_error(const ArchiveEntry& entry, const ArchiveEntry& reference) {
   double squares = 0.0, of_reference = 0.0;
@@ -133,7 +137,7 @@ TextTable ratio_table(const Matrix& matrix) {
       const std::string none = place.suits ? "none" : "-";
       entries.push_back({words_of_world(matrix.worlds[w]),
                          place.entry == nullptr ? none
-                                                : ratio_in_matrix(place.entry->verdict) + ' ' +
+                                                : ratio_text(place.entry->verdict.ratio) + ' ' +
                                                       class_of(place.entry->verdict).mark});
     }
     table.add(entries);
@@ -171,7 +175,9 @@ TextTable world_table(const Matrix& matrix, std::size_t world) {
         {"filter", row.label, Align::left},
         {"verdict", words_of(entry->verdict), Align::left},
         {formatted("NEES ratio [{}]", level_text(entry->verdict.level)),
-         with_interval(entry->verdict.ratio, entry->verdict.interval)},
+         entry->verdict.ratio >= kDiverged
+             ? ratio_text(entry->verdict.ratio)
+             : with_interval(entry->verdict.ratio, entry->verdict.interval)},
         {"RMSE [m]", readable(entry->position_rmse())},
         {"CPU/run [ms]", readable(1e3 * entry->cpu_seconds, 2)},
         {"runs", entry->failed == 0 ? std::to_string(entry->runs)

@@ -49,6 +49,9 @@ const VerdictClass& class_of(const ArchivedVerdict& verdict);
 /// All classes, in the order of the legend.
 std::vector<VerdictClass> verdict_classes();
 
+/// A NEES ratio in few characters: "1.02", "73", "> 1e4", and "?" if it is not tested.
+std::string ratio_text(double ratio);
+
 /// A table of NEES ratios with the marks of their verdicts, for a terminal, and its legend.
 TextTable ratio_table(const Matrix& matrix);
 std::string legend_text(const Matrix& matrix);

@@ -26,11 +26,6 @@ constexpr const char* kRatio =
 constexpr const char* kSmall = "font-size=\"10.5\" fill=\"#333333\" text-anchor=\"middle\"";
 constexpr const char* kNote = "font-size=\"12\" fill=\"#444444\"";
 
-std::string short_ratio(double ratio) {
-  if (std::isnan(ratio)) return "?";
-  return ratio < 100.0 ? readable(ratio) : ratio < 1e4 ? readable(ratio, 2) : "> 1e4";
-}
-
 std::string time_text(double seconds) {
   if (std::isnan(seconds)) return "";
   return seconds < 1e-3  ? readable(1e6 * seconds, 2) + " \u00b5s"
@@ -48,7 +43,7 @@ void draw_place(const Matrix::Place& place, double x, double y, Drawing& drawing
     return;
   }
   drawing.rectangle(box, formatted("fill=\"{}\"", class_of(place.entry->verdict).colour));
-  drawing.text(middle, y + 16.0, short_ratio(place.entry->verdict.ratio), kRatio);
+  drawing.text(middle, y + 16.0, ratio_text(place.entry->verdict.ratio), kRatio);
   if (std::isfinite(place.relative_error))
     drawing.text(middle, y + 29.0, "\u00d7" + readable(place.relative_error), kSmall);
   drawing.text(middle, y + 41.0, time_text(place.entry->cpu_seconds), kSmall);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/commands/archive_comparison.hpp"
 
+#include "analysis/statistics/run_mean.hpp"
+#include "analysis/statistics/spread.hpp"
 #include "analysis/study/study_analysis.hpp"
 #include "analysis/study/study_comparison.hpp"
 #include "engine/errors.hpp"
@@ -23,10 +25,13 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kArchiveNote =
-    "Filters are compared run by run, on the same drives with the same noise. 'difference' is the "
-    "mean of the archived filter minus that of yours, with its 95 % interval; 'ratio' is the "
-    "quotient of the means; 'runs won' is the share of runs in which the archived filter is "
-    "better. A difference has no interval if few runs decide the mean ('heavy tail').";
+    "Filters are compared run by run, on the same drives with the same noise. The difference is "
+    "the mean of yours minus that of the archived filter, with its 95 % interval; 'ratio' is the "
+    "mean of yours divided by that of the archived filter; runs are won by yours where its number "
+    "is better, or, of the NEES ratio, lower. A difference has no interval if few runs decide the "
+    "mean ('heavy tail').";
+
+constexpr std::size_t kErrorsOfAPose = 3;  ///< components that a NEES of the archive judges
 
 void refuse_options_of_cells(const Arguments& arguments) {
   for (const char* option : {"baseline", "metric", "all", "csv", "level", "within"}) {
@@ -51,11 +56,35 @@ std::vector<ArchiveEntry> entries_of_world(const ResultFile& file, const Argumen
       file.path(), joined(benchmark_worlds()));
 }
 
-/// An archived filter as the comparison needs it.
-CellAnalysis cell_of(const ArchiveEntry& entry) {
+/// An entry with the scores of runs [first, last) alone, and its NEES ratio and failures over them.
+/// The verdict remains that of all its runs.
+ArchiveEntry over_runs(ArchiveEntry entry, std::uint64_t first, std::uint64_t last) {
+  last = std::min(last, entry.runs);
+  if (first == 0 && last == entry.runs) return entry;
+  std::vector<double> ratios;
+  entry.failed = 0;
+  for (std::vector<double>& scores : entry.scores) {
+    for (std::uint64_t run = 0; run < entry.runs; ++run) {
+      if (run < first || run >= last) scores[run] = kNaN;
+    }
+  }
+  for (std::uint64_t run = first; run < last; ++run) {
+    if (std::isnan(entry.scores[kArchivedPositionRmse][run])) ++entry.failed;
+    const double nees = entry.scores[kArchivedNees][run];
+    if (!std::isnan(nees)) ratios.push_back(nees / static_cast<double>(kErrorsOfAPose));
+  }
+  entry.runs = last - std::min(first, last);
+  const auto mean = RunMean::of_ratio(spread_of(ratios).summary);
+  entry.verdict.ratio = mean.mean();
+  entry.verdict.interval = mean.interval(entry.verdict.level);
+  return entry;
+}
+
+/// Runs [first, last) of an archived filter as the comparison needs them.
+CellAnalysis cell_of(const ArchiveEntry& entry, std::uint64_t first, std::uint64_t last) {
   CellAnalysis cell;
   cell.label = entry.label;
-  for (std::uint64_t run = 0; run < entry.runs; ++run) {
+  for (std::uint64_t run = first; run < std::min(last, entry.runs); ++run) {
     if (std::isnan(entry.scores[kArchivedPositionRmse][run])) {
       cell.failures.push_back({run, 0, {}});
       continue;
@@ -67,7 +96,7 @@ CellAnalysis cell_of(const ArchiveEntry& entry) {
     cell.scores.add(values);
   }
   cell.complete = cell.runs.size();
-  cell.nees.emplace_back().series.dimension = 3;  // of a pose
+  cell.nees.emplace_back().series.dimension = kErrorsOfAPose;
   return cell;
 }
 
@@ -80,31 +109,64 @@ void round_scores(CellAnalysis& cell) {
   }
 }
 
-/// A cell of a result as a row of the table, beside the archive.
-ArchiveEntry row_of(const CellAnalysis& cell, const ArchiveEntry& of_world, std::uint64_t runs) {
+/// A cell of a result, whose runs end before `end`, as a row of the table beside the archive.
+ArchiveEntry row_of(const CellAnalysis& cell, const ArchiveEntry& of_world, std::uint64_t end) {
   ArchiveEntry row;
   row.world = of_world.world;
   row.label = cell.label + " (yours)";
   row.cell = of_world.cell;
   row.drives_sha256 = of_world.drives_sha256;
-  row.runs = runs;
   row.failed = cell.failures.size();
   row.verdict = verdict_in_short(cell.verdict);
-  row.cpu_seconds = cell.over_runs("cpu_seconds").mean;
-  row.scores = scores_of_runs(cell, runs);
+  row.cpu_seconds = cpu_seconds_of(cell);
+  row.scores = scores_of_runs(cell, end);
   return row;
 }
 
-void print_differences_from(const StudyAnalysis& study, const std::string& mine,
-                            const Parallel& parallel) {
+/// Compares a cell with every archived filter, of which `archived` has the cells.
+Comparisons comparisons_of(const CellAnalysis& cell, StudyAnalysis archived,
+                           const Parallel& parallel) {
+  archived.cells.insert(archived.cells.begin(), cell);
   std::vector<const Score*> scores;
   for (const char* name : kArchivedScores) scores.push_back(find_score(name));
-  const Comparisons comparisons = compare_cells(study, mine, scores, parallel);
+  return seen_from_baseline(compare_cells(archived, cell.label, scores, parallel));
+}
+
+void print_differences(const Comparisons& comparisons) {
   std::cout << '\n'
-            << wrapped(formatted("Archived filters against yours, {}:", mine), output_width());
+            << wrapped(formatted("Yours, {}, against the archived filters:", comparisons.baseline),
+                       output_width());
   print_table(std::cout, difference_table(comparisons), output_width());
   const std::string pairs = analysis::pairs_of_all_rows(comparisons);
   if (!pairs.empty()) std::cout << "\nRuns in each comparison: " << pairs << ".\n";
+}
+
+/// Says over which runs the numbers of archived filters are, if these are not all of theirs.
+std::string note_on_runs(const std::vector<ArchiveEntry>& all,
+                         const std::vector<ArchiveEntry>& shown) {
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    if (shown[i].runs == all[i].runs) continue;
+    return formatted(
+        "Archived filters are shown over the {} runs that yours has too, but for their verdicts, "
+        "which are over all {} runs.",
+        shown[i].runs, all[i].runs);
+  }
+  return "";
+}
+
+/// Prints the cells of `mine` in one table with the entries of their world.
+void print_world(const StudyAnalysis& mine, const std::vector<ArchiveEntry>& entries,
+                 std::uint64_t first_run) {
+  const std::uint64_t end = first_run + mine.runs_here;
+  std::vector<ArchiveEntry> rows;
+  for (const ArchiveEntry& entry : entries) rows.push_back(over_runs(entry, first_run, end));
+  const std::string note = note_on_runs(entries, rows);
+  for (const CellAnalysis& cell : mine.cells) {
+    rows.push_back(row_of(cell, entries.front(), end));
+    rows.back().runs = mine.runs_here;
+  }
+  print_table(std::cout, world_table(matrix_of(rows), 0), output_width());
+  if (!note.empty()) std::cout << '\n' << wrapped(note, output_width());
 }
 
 }  // namespace
@@ -112,24 +174,26 @@ void print_differences_from(const StudyAnalysis& study, const std::string& mine,
 int compare_with_archive(const Arguments& arguments) {
   refuse_options_of_cells(arguments);
   const ResultFile file = open_stored(arguments.operands().front());
-  std::vector<ArchiveEntry> entries = entries_of_world(file, arguments);
+  const std::vector<ArchiveEntry> entries = entries_of_world(file, arguments);
   const Parallel parallel = parallel_of(arguments);
   StudyAnalysis mine = analyze(file, kUsualLevel, parallel);
-  StudyAnalysis both = mine;
-  both.cells.clear();
-  for (const ArchiveEntry& entry : entries) both.cells.push_back(cell_of(entry));
-  const std::uint64_t runs = file.runs().front() + mine.runs_here;
-  const ArchiveEntry of_world = entries.front();
+  StudyAnalysis archived = mine;
+  archived.cells.clear();
+  const std::uint64_t first_run = file.runs().front();
+  for (const ArchiveEntry& entry : entries)
+    archived.cells.push_back(cell_of(entry, first_run, first_run + mine.runs_here));
+  std::vector<Comparisons> all;
   for (CellAnalysis& cell : mine.cells) {
     round_scores(cell);
-    entries.push_back(row_of(cell, of_world, runs));
+    all.push_back(comparisons_of(cell, archived, parallel));
   }
-  print_table(std::cout, world_table(matrix_of(entries), 0), output_width());
-  for (const CellAnalysis& cell : mine.cells) {
-    both.cells.insert(both.cells.begin(), cell);
-    print_differences_from(both, cell.label, parallel);
-    both.cells.erase(both.cells.begin());
+  for (const Comparisons& comparisons : all) {
+    for (const std::string& sentence : comparison_sentences(comparisons))
+      std::cout << wrapped(sentence, output_width(), 2);
   }
+  std::cout << '\n';
+  print_world(mine, entries, first_run);
+  for (const Comparisons& comparisons : all) print_differences(comparisons);
   std::cout << '\n' << wrapped(kArchiveNote, output_width());
   return kDone;
 }

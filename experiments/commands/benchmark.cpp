@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/errors.hpp"
 #include "engine/formatted.hpp"
+#include "engine/records/check_file.hpp"
 #include "engine/records/fingerprint.hpp"
 #include "engine/records/posix_file.hpp"
+#include "engine/records/result_file.hpp"
 #include "engine/runs/monte_carlo.hpp"
 #include "engine/text/number_text.hpp"
 #include "engine/text/wrapped_text.hpp"
@@ -13,13 +15,20 @@
 #include "experiments/commands/arguments.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/shared_work.hpp"
+#include "experiments/commands/stored_result.hpp"
 #include "experiments/commands/summed_study.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>
+#include <array>
+#include <chrono>
+#include <ctime>
 #include <iostream>
+#include <iterator>
 #include <map>
 #include <memory>
+#include <optional>
+#include <span>
 
 namespace montecarta::experiments {
 namespace {
@@ -92,26 +101,121 @@ std::vector<BenchmarkTask> tasks_of(const BenchmarkWorker& worker) {
   return tasks;
 }
 
-/// Throws StudyError if an entry is there that is not of this study.
-void require_same_study(const BenchmarkWorker& worker, const BenchmarkTask& task) {
-  const ArchiveEntry entry = read_entry(task.entry);
-  if (entry.study_sha256 == sha256(resolved_text(worker.study(task)))) return;
-  throw StudyError(
-      "{}: holds the result of another study (of other runs, or of another filter with this "
-      "label): choose another folder, or another label",
-      task.entry);
+/// The files of the program that is the filter of a study, with their SHA-256.
+TextPairs program_files_of(const Study& study) {
+  const CellSpec& cell = study.cells.front();
+  if (!starts_program(*cell.filter)) return {};
+  const auto command =
+      std::ranges::find(cell.options, "command", [](const auto& option) { return option.first; });
+  return files_of_command(command->second);
 }
 
-/// Runs a study, or continues it. The error of work that another study began names it as well.
+/// A file of the program that is not as it was before; "" if there is none. Throws StudyError if
+/// one is gone.
+std::string changed_file(const TextPairs& before, const TextPairs& now, const BenchmarkTask& task) {
+  const auto is_called = [](const std::string& name) {
+    return [&](const auto& file) { return file.first == name; };
+  };
+  for (const auto& [name, sha] : before) {
+    if (std::ranges::any_of(now, is_called(name))) continue;
+    throw StudyError(
+        "{}: no such file (it was a part of the program of {}, and paths are relative to the "
+        "current folder): call montecarta in the folder where it was called before, or give the "
+        "filter another label",
+        name, task.name());
+  }
+  for (const auto& [name, sha] : now) {
+    const auto found = std::ranges::find_if(before, is_called(name));
+    if (found == before.end() || found->second != sha) return name;
+  }
+  return "";
+}
+
+/// Throws the StudyError of `holder`, which has a result or work of another study than the task.
+[[noreturn]] void refuse_other_study(const BenchmarkWorker& worker, const BenchmarkTask& task,
+                                     const fs::path& holder, const std::string& study_sha256,
+                                     std::uint64_t runs) {
+  const Study with_its_runs = benchmark_study(task.world, task.filter.cell, runs);
+  const fs::path all = fs::path(task.entry).replace_extension(".*");
+  if (sha256(resolved_text(with_its_runs)) == study_sha256) {
+    throw StudyError(
+        "{}: is of {} runs, and {} are asked for (runs cannot be added to stored sums): give "
+        "--runs {}, choose another folder, or remove {}",
+        holder, runs, worker.study(task).settings.count("study", "runs"), runs, all);
+  }
+  throw StudyError(
+      "{}: is of another filter, which had this label: choose another label or folder, or remove "
+      "{}",
+      holder, all);
+}
+
+/// Returns whether there is a result of the task. One that an earlier version of its program made
+/// is removed. Throws StudyError if there is a result of another study.
+bool has_result(const BenchmarkWorker& worker, const BenchmarkTask& task) {
+  if (!is_there(task.entry)) return false;
+  const ArchiveEntry entry = read_entry(task.entry);
+  const Study study = worker.study(task);
+  if (entry.study_sha256 != sha256(resolved_text(study)))
+    refuse_other_study(worker, task, task.entry, entry.study_sha256, entry.runs);
+  const std::string changed = changed_file(entry.program_files, program_files_of(study), task);
+  if (changed.empty()) return true;
+  std::cerr << formatted(
+      "montecarta: {} has changed since the result of {} was computed: it is computed again\n",
+      changed, task.name());
+  fs::remove(task.result());  // first, because an entry can be made of it
+  fs::remove(task.entry);
+  return false;
+}
+
+bool has_complete_runs(const fs::path& path) {
+  const ResultFile file(path);
+  return std::ranges::any_of(
+      file.cells(), [&](const StoredCell& cell) { return count_status(file, cell).complete > 0; });
+}
+
+/// The result of a task, which may be there without an entry, and the files of unfinished work.
+std::vector<fs::path> stored_files(const BenchmarkTask& task) {
+  std::vector<fs::path> files;
+  if (is_there(task.result())) files.push_back(task.result());
+  std::error_code none;
+  for (const auto& work : fs::directory_iterator(groups_of(task.result()), none))
+    files.push_back(work.path());
+  return files;
+}
+
+/// Removes what an earlier version of the program has stored for a task without an entry, and files
+/// of other studies without a complete run. Throws StudyError if there are runs of another study.
+void remove_stale_work(const BenchmarkWorker& worker, const BenchmarkTask& task) {
+  const Study study = worker.study(task);
+  const TextPairs files = program_files_of(study);
+  for (const fs::path& file : stored_files(task)) {
+    std::optional<ResultDescription> stored;
+    try {
+      stored = read_description(file);
+    } catch (const std::runtime_error&) {
+      continue;  // no result file, or an incomplete one
+    }
+    if (stored->study_sha256 == sha256(resolved_text(study))) {
+      const std::string changed = changed_file(program_files_in(stored->provenance), files, task);
+      if (changed.empty()) continue;
+      std::cerr << formatted(
+          "montecarta: {} has changed since work on {} began: it is begun anew\n", changed,
+          task.name());
+    } else if (has_complete_runs(file)) {
+      refuse_other_study(worker, task, file, stored->study_sha256, stored->study_runs);
+    }
+    fs::remove(file);
+  }
+}
+
+/// Runs a study, or continues it.
 RunOutcome run_or_continue(const BenchmarkTask& task, const StudyPlan& plan,
                            const RunOptions& options) {
-  const bool is_begun = is_there(groups_of(options.output));
   try {
     return run_summed_study(plan, options);
-  } catch (const StudyError& error) {
-    if (!is_begun) throw;
-    throw StudyError("{}; or give the filter another label, or remove {}", error.what(),
-                     groups_of(task.result()));
+  } catch (const UnansweredProgram& error) {
+    throw UnansweredProgram("{}: {}; --world NAME,... leaves out worlds that it does not model",
+                            task.name(), error.what());
   }
 }
 
@@ -123,21 +227,42 @@ int compute(const BenchmarkWorker& worker, const BenchmarkTask& task, WorkClaim&
   const StudyPlan plan = make_plan(study, std::nullopt, programs_of(study, work.arguments()));
   RunOptions options = work.options_to(task.result());
   options.quiet = true;
+  std::ranges::copy(provenance_of_files(program_files_of(study)),
+                    std::back_inserter(options.provenance));
+  remove_stale_work(worker, task);
   const RunOutcome outcome = run_or_continue(task, plan, options);
   if (outcome.counts.missing > 0) return work.leave(outcome, task.name(), claim);
-  write_entry(entry_of(ResultFile(task.result()), task.world, task.filter.cell,
-                       parallel_of(work.arguments())),
-              worker.folder);
-  work.say(formatted("{}: {} runs in {}", task.name(), outcome.counts.ended(),
-                     duration_text(outcome.seconds)));
+  const ArchiveEntry entry = entry_of(ResultFile(task.result()), task.world, task.filter.cell,
+                                      parallel_of(work.arguments()));
+  write_entry(entry, worker.folder);
+  const std::string failures =
+      entry.failed == 0 ? ""
+                        : formatted(", {} FAILED (first: {})", entry.failed, entry.first_failure);
+  work.say(formatted("{}: {} runs in {}{}", task.name(), entry.runs, duration_text(outcome.seconds),
+                     failures));
   return work.finish(outcome);
+}
+
+/// Computes a result as compute() does. The claim is withdrawn after an error that the user must
+/// mend, so that no number of attempts stands in the way of the mended filter.
+int compute_or_withdraw(const BenchmarkWorker& worker, const BenchmarkTask& task,
+                        WorkClaim& claim) {
+  try {
+    return compute(worker, task, claim);
+  } catch (const UnansweredProgram&) {
+    claim.withdraw();
+    throw;
+  } catch (const StudyError&) {
+    claim.withdraw();
+    throw;
+  }
 }
 
 /// Makes a result that is claimed, and removes the claims on it. Returns as compute() does.
 int make_claimed(const BenchmarkWorker& worker, const BenchmarkTask& task,
                  std::unique_ptr<WorkClaim> claim) {
-  return SharedWork::make_claimed(std::move(claim),
-                                  [&](WorkClaim& own) { return compute(worker, task, own); });
+  return SharedWork::make_claimed(
+      std::move(claim), [&](WorkClaim& own) { return compute_or_withdraw(worker, task, own); });
 }
 
 /// The tasks without an entry, by the path of the entry.
@@ -155,13 +280,47 @@ std::vector<fs::path> paths_in(const std::map<fs::path, const BenchmarkTask*>& t
   return paths;
 }
 
+/// Date and time of the last change of a file, in UTC.
+std::string date_of(const fs::path& path) {
+  const auto changed = std::chrono::file_clock::to_sys(fs::last_write_time(path));
+  const std::time_t time = std::chrono::system_clock::to_time_t(
+      std::chrono::time_point_cast<std::chrono::system_clock::duration>(changed));
+  std::tm utc{};
+  gmtime_r(&time, &utc);
+  std::array<char, 32> text{};
+  std::strftime(text.data(), text.size(), "%Y-%m-%d %H:%M UTC", &utc);
+  return text.data();
+}
+
+/// Says which results are kept, in a line for each filter.
+void say_kept(const BenchmarkWorker& worker, std::span<const BenchmarkTask> kept) {
+  constexpr std::size_t kMostNamed = 3;
+  while (!kept.empty()) {
+    const std::string& label = kept.front().filter.label;
+    std::vector<std::string> worlds, dates;
+    for (const BenchmarkTask& task : kept) {
+      if (task.filter.label != label) break;
+      worlds.push_back(task.world);
+      dates.push_back(date_of(task.entry));
+    }
+    const auto [first, last] = std::ranges::minmax(dates);
+    worker.work.say(formatted(
+        "{} in {}: result of {} kept, not computed again", label,
+        worlds.size() > kMostNamed ? formatted("{} worlds", worlds.size()) : joined(worlds),
+        first == last ? first : first + " to " + last));
+    kept = kept.subspan(worlds.size());
+  }
+}
+
 /// Works until no task is left that no other process is at. Filters are run in their order.
 int run_tasks(const BenchmarkWorker& worker, std::span<const BenchmarkTask> tasks) {
+  std::vector<BenchmarkTask> kept;
   for (const BenchmarkTask& task : tasks) {
-    fs::create_directories(task.entry.parent_path());
-    if (is_there(task.entry)) require_same_study(worker, task);
     programs_of(worker.study(task), worker.arguments());
+    fs::create_directories(task.entry.parent_path());
+    if (has_result(worker, task)) kept.push_back(task);
   }
+  say_kept(worker, kept);
   for (const BenchmarkTask& task : tasks) {
     if (is_there(task.entry)) continue;
     auto claim = claim_free({task.entry}, worker.work.patience());
@@ -185,6 +344,17 @@ int run_tasks(const BenchmarkWorker& worker, std::span<const BenchmarkTask> task
   return kDone;
 }
 
+/// Prints the ratios of the worlds that were asked for.
+void print_ratios(const BenchmarkWorker& worker, std::vector<ArchiveEntry> entries) {
+  const std::vector<std::string> worlds = worlds_of(worker.arguments());
+  std::erase_if(entries, [&](const ArchiveEntry& entry) {
+    return std::ranges::count(worlds, entry.world) == 0;
+  });
+  const Matrix matrix = matrix_of(entries);
+  print_table(std::cout, ratio_table(matrix), output_width());
+  std::cout << "\n" << wrapped(legend_text(matrix), output_width());
+}
+
 /// The entries of the folder and, if asked for, those of the archive that the folder has not.
 std::vector<ArchiveEntry> entries_to_draw(const BenchmarkWorker& worker) {
   std::vector<ArchiveEntry> entries = read_entries(worker.folder);
@@ -206,16 +376,14 @@ void draw(const BenchmarkWorker& worker) {
         "another folder",
         worker.folder);
   }
+  print_ratios(worker, entries);
   const Matrix matrix = matrix_of(entries);
-  const std::size_t width = output_width();
-  print_table(std::cout, ratio_table(matrix), width);
-  std::cout << "\n" << wrapped(legend_text(matrix), width);
   const fs::path folder = worker.arguments().text("output").value_or(worker.folder.string());
   make_directory(folder);
   write_text(folder / "matrix.svg", matrix_figure(matrix));
   write_text(folder / "index.html", matrix_page(matrix));
   write_csv(matrix_frame(matrix), folder / "matrix.csv");
-  std::cout << wrapped("Page: " + (folder / "index.html").string(), width);
+  std::cout << wrapped("Page: " + (folder / "index.html").string(), output_width());
 }
 
 }  // namespace

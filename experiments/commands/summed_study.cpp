@@ -274,7 +274,7 @@ RunOutcome run_or_continue(const StudyPlan& plan, const RunOptions& options,
   try {
     return run_groups(plan, options, folder);
   } catch (...) {
-    if (!options.attempt) remove_empty_work(folder);
+    remove_empty_work(folder);
     throw;
   }
 }

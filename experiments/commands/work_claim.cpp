@@ -116,6 +116,13 @@ void WorkClaim::leave() {
   replace_text(claim_, formatted("{} by {}\n", kLeftText, name_of_process()));
 }
 
+void WorkClaim::withdraw() {
+  stop();
+  left_ = true;
+  std::error_code ignored;
+  fs::remove(claim_, ignored);
+}
+
 void WorkClaim::fail(const std::string& reason) {
   if (left_) return;
   stop();

@@ -51,6 +51,8 @@ class WorkClaim {
   const std::filesystem::path& file() const { return file_; }
   /// Leaves the file to any other worker, after a checkpoint.
   void leave();
+  /// Removes the claim, as if it had not been made.
+  void withdraw();
   /// Says why the work failed, unless the file was left.
   void fail(const std::string& reason);
 

@@ -2,8 +2,11 @@
 #include "experiments/external/external_filter.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/records/fingerprint.hpp"
+#include "experiments/files/files.hpp"
 #include "experiments/text/words.hpp"
 
+#include <filesystem>
 #include <utility>
 
 namespace montecarta::experiments {
@@ -94,9 +97,9 @@ void ExternalFilter::send_start(const RunStart& start) const {
   } catch (const ProgramError& error) {
     if (stop_ != nullptr && stop_->is_set()) throw;
     if (command_.starts->any_was_answered || ++command_.starts->failed < kHopelessStarts) throw;
-    throw RunError(
-        "program '{}': none of its first {} starts was answered ({}): mend the program; montecarta "
-        "check tries it",
+    throw UnansweredProgram(
+        "program '{}': none of its first {} starts was answered ({}): mend the program and give "
+        "the same command again",
         command_.words.front(), kHopelessStarts, error.what());
   }
 }
@@ -143,7 +146,21 @@ Parameter command_option() {
 
 }  // namespace
 
-bool starts_program(const FilterKind& filter) { return filter.name == kExternal; }
+bool starts_program(const FilterKind& filter) { return starts_program(filter.name); }
+bool starts_program(std::string_view filter) { return filter == kExternal; }
+
+std::vector<std::pair<std::string, std::string>> files_of_command(const std::string& command) {
+  std::vector<std::pair<std::string, std::string>> files;
+  for (const std::string& word : quoted_words(command)) {
+    std::error_code none;
+    const std::filesystem::path path = std::filesystem::canonical(word, none);
+    if (none || !std::filesystem::is_regular_file(path, none)) continue;
+    const std::string name = path.string();
+    const bool is_of_system = name.starts_with("/usr/bin/") || name.starts_with("/usr/lib/");
+    if (!is_of_system) files.emplace_back(word, sha256(whole_file(path)));
+  }
+  return files;
+}
 
 FilterKind external_kind() {
   return {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/core/slam_filter.hpp"
+#include "engine/errors.hpp"
 #include "experiments/external/child_process.hpp"
 #include "experiments/external/messages.hpp"
 #include "filters/setup/filter_kind.hpp"
@@ -12,6 +13,8 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 namespace montecarta::experiments {
@@ -34,6 +37,13 @@ struct ExternalCommand {
 };
 /// The study is stopped after this many failed starts if no start has been answered.
 inline constexpr int kHopelessStarts = 8;
+
+/// The error that stops it. Nothing that such a program did is a result, and other workers would
+/// end by the same error until the program is mended.
+class UnansweredProgram : public RunError {
+ public:
+  using RunError::RunError;
+};
 
 /// A filter in any language: a process that receives the controls and detections of each run and
 /// answers with its estimates (EXTERNAL_FILTERS.md). It is started in the first run and kept for
@@ -89,6 +99,12 @@ inline constexpr const char* kAllowExternal = "allow-external";
 
 /// Returns whether cells of this kind start a program.
 bool starts_program(const FilterKind& filter);
+/// The same for the kind of this name.
+bool starts_program(std::string_view filter);
+
+/// Pairs (word, SHA-256): the words of a command that are files now, relative to the current
+/// folder. Programs of the system, in /usr/bin and /usr/lib, do not count.
+std::vector<std::pair<std::string, std::string>> files_of_command(const std::string& command);
 
 /// The kind of external programs: `cell = external command="python3 my_filter.py" label=mine`.
 FilterKind external_kind();

@@ -18,6 +18,8 @@ function montecarta_filter(filter)
 %
 % The belief is the only state between calls, so a start does not depend on earlier runs.
 % Print to standard error only, fprintf(stderr, ...): standard output is reserved for the answers.
+% montecarta shows only its last line, as the reason if the program ends. To see all of it, send it
+% to a file: command="sh -c 'octave-cli --no-history --eval mine 2>>log.txt'".
   if ~isfield(filter, 'report')
     filter.report = @(belief) struct();
   end

@@ -4,8 +4,7 @@
     class MyFilter(montecarta_filter.Filter): ...
     montecarta_filter.serve(MyFilter())
 
-Needs only Python's standard library. The filter may return numpy arrays and numbers. Its prints go
-to standard error, because standard output is reserved for the answers.
+Needs only Python's standard library. The filter may return numpy arrays and numbers.
 """
 import json
 import os
@@ -13,7 +12,12 @@ import sys
 
 
 class Filter:
-    """The interface of a filter. Lengths are in m, angles in rad, times in s."""
+    """The interface of a filter. Lengths are in m, angles in rad, times in s.
+
+    What print() writes goes to standard error, since standard output is reserved for the answers.
+    montecarta shows only the last line of it, as the reason if the program ends. To see all of it,
+    send it to a file: command="sh -c 'python3 mine.py 2>>log.txt'".
+    """
 
     def start(self, pose, settings, run, seed):
         """Starts a run at `pose` [x, y, heading], which is known exactly, with an empty map.

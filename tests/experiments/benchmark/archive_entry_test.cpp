@@ -35,6 +35,7 @@ ArchiveEntry full_entry() {
                      .label = "mine",
                      .filter = "ekf_slam",
                      .cell = "ekf_slam label=mine",
+                     .program_files = {{"mine.py", std::string(64, 'c')}},
                      .study_sha256 = std::string(64, 'a'),
                      .drives_sha256 = std::string(64, 'b'),
                      .seed = 7,

@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <limits>
 #include <set>
 #include <string>
 
@@ -73,6 +74,18 @@ TEST(Matrix, TellsWhatIsMissingFromWhatDoesNotSuit) {
   EXPECT_EQ(table.rows[1][2], "-");
   EXPECT_EQ(table.rows[2][1], "2.00 +");
   EXPECT_THAT(legend_text(matrix), AllOf(HasSubstr("A dash"), HasSubstr("not computed")));
+}
+
+TEST(Matrix, ShowsARatioOfDivergedRunsAsABound) {
+  EXPECT_EQ(ratio_text(1.0 / 3.0), "0.333");
+  EXPECT_EQ(ratio_text(99.9), "99.9");
+  EXPECT_EQ(ratio_text(1234.5), "1234");
+  EXPECT_EQ(ratio_text(5.76e55), "> 1e4");
+  EXPECT_EQ(ratio_text(std::numeric_limits<double>::infinity()), "> 1e4");
+  std::vector<ArchiveEntry> entries = {placed("field_easy", "ekf_slam", {1.0})};
+  entries.front().verdict.ratio = 5.76e55;
+  EXPECT_EQ(ratio_table(matrix_of(entries)).rows[0][1], "> 1e4 +");
+  EXPECT_EQ(world_table(matrix_of(entries), 0).rows[0][2], "> 1e4");
 }
 
 TEST(Matrix, FigureDrawsEachPlaceInTheColourOfItsClass) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // benchmark, compare --archive and verify --archive.
+#include "engine/records/fingerprint.hpp"
 #include "experiments/text/words.hpp"
 #include "tests/doubles/matchers.hpp"
 #include "tests/experiments/commands/program.hpp"
@@ -19,6 +20,19 @@ class Benchmark : public Program {
     if (std::ranges::find(more, "--world") == more.end())
       words.insert(words.end(), {"--world", "corridor_easy,known_map"});
     return call_with(std::move(words), more);
+  }
+  /// Runs a program, tests/doubles/scripted_program.cpp in a mode, whose command names mine.txt.
+  Called run_program(const std::string& mode) const {
+    return call(
+        {"benchmark", "out", "--runs", "70", "--world", "corridor_easy", "--allow-external",
+         "--cell",
+         "external label=mine command='" MONTECARTA_SCRIPTED_PROGRAM " " + mode + " mine.txt'"});
+  }
+  /// The line of a text that begins with `begin`, from its first number on.
+  static std::string numbers_of(const std::string& text, const std::string& begin) {
+    const std::size_t line = ("\n" + text).find("\n" + begin);
+    const std::string found = text.substr(line, text.find('\n', line) - line).substr(begin.size());
+    return found.substr(found.find_first_of("0123456789"));
   }
   /// An entry without what is no part of the result.
   std::string result_of(const std::string& entry) const {
@@ -75,10 +89,10 @@ TEST_F(Benchmark, KeepsResultsOfOtherRunsAsTheyAre) {
   const std::string before = text_of("out/corridor_easy/a.json");
   expect_refused({"benchmark", "out", "--runs", "80", "--cell", "ekf_slam label=a", "--world",
                   "corridor_easy"},
-                 "holds the result of another study");
+                 "is of 70 runs, and 80 are asked for");
   expect_refused({"benchmark", "out", "--runs", "70", "--cell", "ekf_slam label=a iterations=2",
                   "--world", "corridor_easy"},
-                 "holds the result of another study");
+                 "is of another filter, which had this label");
   EXPECT_EQ(text_of("out/corridor_easy/a.json"), before);
 }
 
@@ -97,6 +111,56 @@ TEST_F(Benchmark, OfAProgramNeedsLeave) {
   expect_refused({"benchmark", "out", "--cell", "external label=mine command=\"true\"", "--world",
                   "corridor_easy"},
                  "add --allow-external");
+}
+
+TEST_F(Benchmark, KeepsAResultUntilAFileOfItsProgramChanges) {
+  write("mine.txt", "first");
+  ASSERT_EQ(run_program("good -1").code, 0);
+  const std::string first = text_of("out/corridor_easy/mine.json");
+  EXPECT_THAT(first, HasSubstr("\"mine.txt\": \"" + sha256("first")));
+  EXPECT_THAT(run_program("good -1").err,
+              ContainsRegex("mine in corridor_easy: result of .* kept"));
+  EXPECT_EQ(text_of("out/corridor_easy/mine.json"), first);
+
+  write("mine.txt", "second");
+  const Called changed = run_program("good -1");
+  EXPECT_EQ(changed.code, 0);
+  EXPECT_THAT(changed.err, HasSubstr("mine.txt has changed since the result of mine"));
+  EXPECT_THAT(text_of("out/corridor_easy/mine.json"), HasSubstr(sha256("second")));
+
+  write("mine.txt", "third");  // the result without its entry is an old one as well
+  std::filesystem::remove(folder_ / "out/corridor_easy/mine.json");
+  EXPECT_THAT(run_program("good -1").err, HasSubstr("mine.txt has changed since work on mine"));
+  EXPECT_THAT(text_of("out/corridor_easy/mine.json"), HasSubstr(sha256("third")));
+
+  std::filesystem::remove(folder_ / "mine.txt");
+  const Called gone = run_program("good -1");
+  EXPECT_EQ(gone.code, 2);
+  EXPECT_THAT(gone.err, HasSubstr("mine.txt: no such file"));
+  EXPECT_TRUE(exists("out/corridor_easy/mine.h5"));
+}
+
+TEST_F(Benchmark, OfAProgramThatNeverAnswersLeavesNothing) {
+  write("mine.txt", "");
+  for (int attempt = 0; attempt < 5; ++attempt) run_program("exit 0");  // any number of them
+  const Called called = run_program("exit 0");
+  EXPECT_EQ(called.code, 1);
+  EXPECT_THAT(called.err, AllOf(HasSubstr("mine in corridor_easy: "), HasSubstr("--world NAME")));
+  EXPECT_TRUE(std::filesystem::is_empty(folder_ / "out/corridor_easy"));
+  EXPECT_EQ(run_program("good -1").code, 0) << "the label is free";
+}
+
+TEST_F(Benchmark, DoesNotTakeTheTimeBesideAProgramForItsCost) {
+  write("mine.txt", "");
+  ASSERT_EQ(run_program("good -1").code, 0);
+  EXPECT_THAT(text_of("out/corridor_easy/mine.json"), HasSubstr("\"cpu_seconds\": null"));
+}
+
+TEST_F(Benchmark, PrintsTheWorldsThatAreAskedFor) {
+  ASSERT_EQ(run("out").code, 0);
+  const Called called = call({"benchmark", "out", "--draw", "--world", "known_map"});
+  EXPECT_THAT(called.out, AllOf(HasSubstr("known map"), Not(HasSubstr("corridor"))));
+  EXPECT_THAT(text_of("out/index.html"), HasSubstr("<h2>corridor_easy</h2>"));
 }
 
 TEST_F(Benchmark, ArchiveIsReproducedAndADifferenceIsFound) {
@@ -167,6 +231,38 @@ TEST_F(Benchmark, ComparesAResultWithAnArchiveRunByRun) {
   EXPECT_THAT(called.out, ContainsRegex("NEES ratio +a +0.00 +1.00 +0.0 %"));
   EXPECT_THAT(called.out, ContainsRegex("position_rmse \\[m\\] +b "));
   expect_refused({"compare", "out/corridor_easy/a.h5", "--entries", "out"}, "without --archive");
+}
+
+TEST_F(Benchmark, ComparesFewerRunsWithTheSameOnesOfTheArchive) {
+  ASSERT_EQ(run("out", {"--world", "corridor_easy"}).code, 0);
+  ASSERT_EQ(call({"benchmark", "few", "--runs", "20", "--cell", "ekf_slam label=mine", "--world",
+                  "corridor_easy"})
+                .code,
+            0);
+  const Called called =
+      call({"compare", "few/corridor_easy/mine.h5", "--archive", "--entries", "out"});
+  // a is the same filter: ratio, interval and RMSE of the same 20 runs are the same, of 70 are not.
+  const auto without_cpu = [](const std::string& numbers) {
+    return numbers.substr(0, numbers.find("  ", numbers.find(']') + 8));
+  };
+  EXPECT_EQ(without_cpu(numbers_of(called.out, "a ")),
+            without_cpu(numbers_of(called.out, "mine (yours) ")))
+      << called.out;
+  EXPECT_THAT(called.out, HasSubstr("over the 20 runs that yours has too"));
+  EXPECT_THAT(called.out, HasSubstr("over all 70 runs"));
+  EXPECT_THAT(called.out, HasSubstr("Runs in each comparison: 20."));
+}
+
+TEST_F(Benchmark, SaysBeforeTheTablesWhereYoursIsBetter) {
+  ASSERT_EQ(run("out", {"--world", "corridor_hard"}).code, 0);
+  const Called called =
+      call({"compare", "out/corridor_hard/a.h5", "--archive", "--entries", "out"});
+  EXPECT_THAT(called.out, StartsWith("a against a: undecided: position_rmse, heading_rmse, "
+                                     "NEES ratio.\na against b: position_rmse better"));
+  // Dead reckoning has the larger error: yours minus that is negative, and most runs are won.
+  EXPECT_THAT(called.out, ContainsRegex("against +a minus that \\[95 %\\] +ratio +runs a won"));
+  EXPECT_THAT(called.out,
+              ContainsRegex("position_rmse \\[m\\] +b +-[0-9].* 0\\.[0-9]+ +[89][0-9]"));
 }
 
 TEST_F(Benchmark, DoesNotCompareAcrossWorldsOrSeeds) {

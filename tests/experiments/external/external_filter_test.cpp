@@ -194,6 +194,7 @@ TEST_F(External, AProgramThatNeverStartsEndsTheStudy) {
   const auto run = [&](const char* runs) { result_of(scripted("exit 0"), {kAtScans, runs}); };
   EXPECT_THAT([&] { run("study.runs=100"); },
               testing::ThrowsMessage<RunError>(HasSubstr("none of its first 8 starts")));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out1.h5.part")) << "it would block the next try";
   EXPECT_NO_THROW(run("study.runs=7")) << "so few failures are results";
 }
 
