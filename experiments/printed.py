@@ -333,7 +333,8 @@ def another_world(value, printed, measured, batches):
         return None
     for other in printed["value"]:
         if (other["cell"], other["metric"]) == (printed["baseline"], value["metric"]):
-            verdict = judge_value(other, printed, measured, batches)[2]
+            mean = judge_value(other, printed, measured, batches)[0]
+            verdict = distance_text(mean, other["number"])
             if verdict.startswith("not reproduced"):
                 return f"another world: {other['cell']}{verdict.removeprefix('not reproduced')}"
     return None
