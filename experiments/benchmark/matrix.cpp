@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <set>
 
@@ -53,6 +54,21 @@ Matrix::Place place_of(const EntriesByPlace& entries, const BenchmarkFilter& fil
     place.relative_error = relative_error(*place.entry, *smoother);
   }
   return place;
+}
+
+/// A sentence that says that entries have different numbers of runs; "" if they have not.
+std::string note_on_runs(const Matrix& matrix) {
+  std::set<std::uint64_t> runs;
+  for (const Matrix::Row& row : matrix.rows) {
+    for (const Matrix::Place& place : row.places) {
+      if (place.entry != nullptr) runs.insert(place.entry->runs);
+    }
+  }
+  if (runs.size() < 2) return "";
+  return formatted(
+      " Filters have from {} to {} runs: 'montecarta compare FOLDER/WORLD/LABEL.h5 --archive' "
+      "compares one with the others over the same runs.",
+      *runs.begin(), *runs.rbegin());
 }
 
 std::string words_of(const ArchivedVerdict& verdict) {
@@ -160,7 +176,7 @@ std::string legend_text(const Matrix& matrix) {
   text += ".";
   if (has(false)) text += " A dash: the world does not suit the filter.";
   if (has(true)) text += " none: not computed.";
-  return text;
+  return text + note_on_runs(matrix);
 }
 
 TextTable world_table(const Matrix& matrix, std::size_t world) {

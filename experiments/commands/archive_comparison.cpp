@@ -142,8 +142,8 @@ void print_differences(const Comparisons& comparisons) {
 }
 
 /// Says over which runs the numbers of archived filters are, if these are not all of theirs.
-std::string note_on_runs(const std::vector<ArchiveEntry>& all,
-                         const std::vector<ArchiveEntry>& shown) {
+std::string note_on_shown_runs(const std::vector<ArchiveEntry>& all,
+                               const std::vector<ArchiveEntry>& shown) {
   for (std::size_t i = 0; i < shown.size(); ++i) {
     if (shown[i].runs == all[i].runs) continue;
     return formatted(
@@ -160,7 +160,7 @@ void print_world(const StudyAnalysis& mine, const std::vector<ArchiveEntry>& ent
   const std::uint64_t end = first_run + mine.runs_here;
   std::vector<ArchiveEntry> rows;
   for (const ArchiveEntry& entry : entries) rows.push_back(over_runs(entry, first_run, end));
-  const std::string note = note_on_runs(entries, rows);
+  const std::string note = note_on_shown_runs(entries, rows);
   for (const CellAnalysis& cell : mine.cells) {
     rows.push_back(row_of(cell, entries.front(), end));
     rows.back().runs = mine.runs_here;

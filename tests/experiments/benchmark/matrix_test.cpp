@@ -76,6 +76,15 @@ TEST(Matrix, TellsWhatIsMissingFromWhatDoesNotSuit) {
   EXPECT_THAT(legend_text(matrix), AllOf(HasSubstr("A dash"), HasSubstr("not computed")));
 }
 
+TEST(Matrix, SaysThatNumbersOfRunsDiffer) {
+  std::vector<ArchiveEntry> entries = {placed("field_easy", "ekf_slam", {1.0}),
+                                       placed("field_easy", "mine", {2.0})};
+  entries.back().cell = "ekf_slam label=mine";
+  EXPECT_THAT(legend_text(matrix_of(entries)), Not(HasSubstr("Filters have")));
+  entries.front().runs = 2000;
+  EXPECT_THAT(legend_text(matrix_of(entries)), HasSubstr("from 1 to 2000 runs"));
+}
+
 TEST(Matrix, ShowsARatioOfDivergedRunsAsABound) {
   EXPECT_EQ(ratio_text(1.0 / 3.0), "0.333");
   EXPECT_EQ(ratio_text(99.9), "99.9");
