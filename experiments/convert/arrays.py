@@ -33,6 +33,9 @@ def names_in(given):
 def convert(paths):
     path, output = paths
     arrays = estimate_arrays.Arrays(path)
+    for name in AXES:
+        if name not in arrays.variables and f"{name}s" in arrays.variables:
+            raise ConversionError(f"{path}: has {name}s (an array is called {name}): rename it")
     found = {name: arrays.get(name, axes) for name, axes in AXES.items()}
     states = found["error"] if found["mean"] is None else found["mean"]
     if states is None:

@@ -44,12 +44,18 @@ std::vector<std::string> header_of(const std::vector<std::string>& columns, std:
   return header;
 }
 
-/// Returns the file unless it is a result.
-const ArrayFile& not_a_result(const ArrayFile& file, const std::filesystem::path& path) {
+/// Returns the file unless it is a result, or has an array under the plural of its name.
+const ArrayFile& checked(const ArrayFile& file, const std::filesystem::path& path) {
   const auto filetype = file.texts("filetype");
-  if (!filetype || filetype->empty() || filetype->front() != format::kFiletype) return file;
-  throw StudyError(path.string() +
-                   ": is a result already (judge reads arrays): use montecarta analyze");
+  if (filetype && !filetype->empty() && filetype->front() == format::kFiletype) {
+    throw StudyError(path.string() +
+                     ": is a result already (judge reads arrays): use montecarta analyze");
+  }
+  for (const std::string name : {"error", "mean", "covariance", "truth"}) {
+    if (file.has(name) || !file.has(name + "s")) continue;
+    throw StudyError("{}: has {}s (an array is called {}): rename it", path.string(), name, name);
+  }
+  return file;
 }
 
 }  // namespace
@@ -60,7 +66,7 @@ EstimateArrays::EstimateArrays(std::filesystem::path path, std::string cell,
       converted_(are_foreign_arrays(path_) ? std::make_unique<ConvertedArrays>(path_) : nullptr),
       file_(converted_ ? converted_->path() : path_),
       cells_{std::move(cell)},
-      states_(open(not_a_result(file_, path_).has("error") ? "error" : "mean", 3)),
+      states_(open(checked(file_, path_).has("error") ? "error" : "mean", 3)),
       covariance_(open("covariance", 4)),
       truth_(find("truth", 3)),
       time_(find("time", 2)),

@@ -35,6 +35,7 @@ with open("new.mat", "r+b") as file:
 for name in "study.npz", "old.mat", "new.mat":
     open("damaged_" + name, "wb").write(open(name, "rb").read()[:900])
 np.savez("nothing.npz", other=np.zeros(3))
+np.savez("plural.npz", errors=arrays["error"], covariances=arrays["covariance"])
 )";
 
 class JudgeForeignArrays : public Program {
@@ -78,6 +79,7 @@ TEST_F(JudgeForeignArrays, ThatAreDamagedAreRefused) {
     EXPECT_TRUE(is_nothing_left()) << name;
   }
   EXPECT_THAT(judged("nothing.npz").err, HasSubstr("nothing.npz: no 'error', and no 'mean'"));
+  EXPECT_THAT(judged("plural.npz").err, HasSubstr("plural.npz: has errors (an array is called"));
   EXPECT_THAT(judged("none.npz").err, HasSubstr("none.npz: cannot be opened"));
   EXPECT_TRUE(is_nothing_left());
 }

@@ -133,6 +133,8 @@ TEST_F(EstimateArraysTest, ThatDoNotFitAreNamed) {
   EXPECT_THAT(complaint(), HasSubstr(":1: time 1 s is not later"));
   Arrays(path_).with("error", {1, 2, 1}, {1}).with("covariance", {1, 2, 1, 1}, {1}).called("a,b");
   EXPECT_THAT(complaint(), HasSubstr("names has 2 columns (error has 1)"));
+  Arrays(path_).with("errors", {2, 3, 2}, {1}).with("covariances", {2, 3, 2, 2}, {1});
+  EXPECT_THAT(complaint(), HasSubstr("study.h5: has errors (an array is called error): rename it"));
   Arrays(path_).with("error", {0, 2, 1}, {}).with("covariance", {0, 2, 1, 1}, {});
   EXPECT_THAT(complaint(), HasSubstr("error is empty"));
 }
