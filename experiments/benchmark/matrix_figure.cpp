@@ -78,9 +78,13 @@ double draw_legend(const Matrix& matrix, double top, Drawing& drawing) {
   }
   const std::size_t lines = (drawn + kLegendColumns - 1) / kLegendColumns;
   const double y = top + kLegendLine * static_cast<double>(lines) + 12.0;
+  const bool has_smoother = std::ranges::any_of(matrix.rows, [](const Matrix::Row& row) {
+    return std::ranges::any_of(
+        row.places, [](const Matrix::Place& place) { return std::isfinite(place.relative_error); });
+  });
   drawing.text(kMargin, y,
-               "Bold: NEES ratio, 1 if squared errors are as large as claimed. "
-               "\u00d7: position RMSE relative to full smoothing.",
+               formatted("Bold: NEES ratio, 1 if squared errors are as large as claimed.{}",
+                         has_smoother ? " \u00d7: position RMSE relative to full smoothing." : ""),
                kNote);
   drawing.text(kMargin, y + 17.0,
                "Below: processor time of a run. Dashed: not computed. \u2013: the world does not "
