@@ -17,6 +17,8 @@
 
 #include <algorithm>
 #include <iostream>
+#include <set>
+#include <string>
 #include <vector>
 
 namespace montecarta::experiments {
@@ -25,19 +27,32 @@ namespace {
 /// What the gate says of a cell.
 struct GatedCell {
   CellAnalysis cell;
-  Verdict verdict;           ///< verdict on its errors, or on the size of its innovations
-  bool is_coloured = false;  ///< whether its innovations are shown not to be white
+  Verdict verdict;  ///< verdict on its errors, or on the size of its innovations
+  const analysis::Innovations* innovations = nullptr;  ///< of imported innovations; else nullptr
   GateAnswer answer = GateAnswer::undecided;
+  std::string beside = {};  ///< what else decided: "The innovations are not white."
 };
 
 bool are_innovations(const ResultFile& file) {
   return !file.cells().empty() && analysis::imported_state(file.cells().front()).are_innovations();
 }
 
-/// The cells that are judged: the one that is named, or all sensors of one filter.
+/// Whether the cells are the sensors of one filter: FILTER.SENSOR.
+bool are_of_one_filter(const ResultFile& file) {
+  std::set<std::string> filters;
+  for (const StoredCell& cell : file.cells()) {
+    const std::string end = "." + analysis::setting_of(cell.settings, "sensor");
+    filters.insert(cell.label.ends_with(end) ? cell.label.substr(0, cell.label.size() - end.size())
+                                             : cell.label);
+  }
+  return filters.size() == 1;
+}
+
+/// The cells that are judged: the one that is named, or all sensors of the only filter.
 std::vector<StoredCell> cells_to_judge(const Arguments& arguments, const ResultFile& file) {
   const auto label = arguments.text("cell");
-  if (!label && (file.cells().size() == 1 || are_innovations(file))) return file.cells();
+  if (!label && (file.cells().size() == 1 || (are_innovations(file) && are_of_one_filter(file))))
+    return file.cells();
   return {item_called(label.value_or(""), file.cells(), &StoredCell::label,
                       (label ? formatted("--cell {}: no cell of {}", *label, file.path())
                              : "gate: --cell CELL is needed") +
@@ -90,6 +105,27 @@ Json json_of(const Member& member, bool is_shown) {
           {"shown", is_shown}};
 }
 
+/// The lag whose correlation is farthest from its bound, of the NIS or of a component.
+Json whiteness_of(const analysis::Innovations& found) {
+  const bool is_tested = found.worst_lag > 0;
+  const auto at_lag = [&](const std::vector<double>& values) {
+    return is_tested ? Json(rounded(values[found.worst_lag - 1])) : Json();
+  };
+  Json components = Json::array();
+  for (const analysis::ComponentCorrelation& one : found.components) {
+    components.push_back({{"lag", one.lag},
+                          {"correlation", rounded(one.correlation)},
+                          {"bound", rounded(one.bound)},
+                          {"mean", rounded(one.mean)},
+                          {"mean_bound", rounded(one.mean_bound)}});
+  }
+  return {{"answer", analysis::whiteness_in_words(found.whiteness(), std::nullopt)},
+          {"lag", found.worst_lag},
+          {"correlation", at_lag(found.autocorrelation)},
+          {"bound", at_lag(found.white_bound)},
+          {"components", std::move(components)}};
+}
+
 Json json_of(const analysis::BlockVerdict& block) {
   return {{"name", block.name},
           {"verdict", analysis::name_of(block.verdict.answer)},
@@ -99,13 +135,13 @@ Json json_of(const analysis::BlockVerdict& block) {
 
 std::string reason_of(const GatedCell& gated, const Allowance& allowed) {
   return sentence(gated.cell.label, gated.verdict) + too_many(gated.verdict, allowed) +
-         (gated.is_coloured ? " The innovations are not white." : "");
+         gated.beside;
 }
 
 /// JSON with all numbers on which the verdict rests. The scans are represented by the one with the
 /// least p-value.
 Json json_of(const GatedCell& gated, const Allowance& allowed) {
-  const auto& [cell, verdict, is_coloured, answer] = gated;
+  const auto& [cell, verdict, innovations, answer, beside] = gated;
   Json blocks = Json::array();
   if (const auto* found = cell.find<std::vector<analysis::BlockVerdict>>()) {
     for (const analysis::BlockVerdict& block : *found) blocks.push_back(json_of(block));
@@ -122,22 +158,52 @@ Json json_of(const GatedCell& gated, const Allowance& allowed) {
                         {"rejected", test.is_rejected},
                         {"members", std::move(members)}});
   }
-  return {{"cell", cell.label},
-          {"gate", name_of(answer)},
-          {"verdict", analysis::name_of(verdict.answer)},
-          {"reason", reason_of(gated, allowed)},
-          {"more_runs", verdict.more_runs ? Json(*verdict.more_runs) : Json()},
-          {"within", verdict.within},
-          {"level", verdict.level},
-          {"runs", verdict.runs},
-          {"failed", verdict.failed},
-          {"failed_allowed", allowed.failed},
-          {"samples", verdict.samples},
-          {"unusable", verdict.unusable},
-          {"unusable_allowed", allowed.unusable},
-          {"missing", verdict.missing},
-          {"families", std::move(families)},
-          {"blocks", std::move(blocks)}};
+  Json json = {{"cell", cell.label},
+               {"gate", name_of(answer)},
+               {"verdict", analysis::name_of(verdict.answer)},
+               {"reason", reason_of(gated, allowed)},
+               {"more_runs", verdict.more_runs ? Json(*verdict.more_runs) : Json()},
+               {"within", verdict.within},
+               {"level", verdict.level},
+               {"runs", verdict.runs},
+               {"failed", verdict.failed},
+               {"failed_allowed", allowed.failed},
+               {"samples", verdict.samples},
+               {"unusable", verdict.unusable},
+               {"unusable_allowed", allowed.unusable},
+               {"missing", verdict.missing},
+               {"families", std::move(families)},
+               {"blocks", std::move(blocks)}};
+  if (innovations != nullptr) json["whiteness"] = whiteness_of(*innovations);
+  return json;
+}
+
+/// Judges innovations by their whiteness too. Those of a few drives whose components are not known
+/// may be off for whole drives, which neither whiteness nor size shows.
+void judge_innovations(const Allowance& allowed, GatedCell& gated) {
+  const analysis::Innovations& found = *gated.innovations;
+  if (found.judges_size()) {
+    gated.verdict = found.verdict;
+    gated.verdict.is_of_innovations = true;
+    gated.verdict.runs = gated.cell.complete;
+    gated.verdict.failed = gated.cell.failures.size();
+  }
+  if (found.whiteness() == analysis::Whiteness::not_white) {
+    gated.answer = GateAnswer::inconsistent;
+    gated.beside = " The innovations are not white.";
+    return;
+  }
+  gated.answer = gate(gated.verdict, allowed);
+  if (gated.answer != GateAnswer::consistent) return;
+  if (found.whiteness() == analysis::Whiteness::untested) {
+    gated.answer = GateAnswer::undecided;
+    gated.beside = " There are too few innovations in a run to tell whether they are white.";
+  } else if (found.judges_size() && gated.cell.complete < analysis::kFewestRunsOfAPlan) {
+    gated.answer = GateAnswer::undecided;
+    gated.beside = formatted(
+        " The NIS alone of fewer than {} drives does not show that a filter is consistent.",
+        analysis::kFewestRunsOfAPlan);
+  }
 }
 
 GatedCell gated(const ResultFile& file, const StoredCell& stored, const Arguments& arguments,
@@ -147,20 +213,15 @@ GatedCell gated(const ResultFile& file, const StoredCell& stored, const Argument
   result.cell = analyze_cell(file, stored, kUsualLevel, file.runs().size(), parallel_of(arguments),
                              arguments.number("within", kLeastMargin, kMostMargin));
   result.verdict = result.cell.verdict;
-  const auto* found = result.cell.find<analysis::Innovations>();
-  if (found != nullptr && are_innovations(file)) {
-    result.is_coloured = found->whiteness() == analysis::Whiteness::not_white;
-    if (found->judges_size()) {
-      result.verdict = found->verdict;
-      result.verdict.is_of_innovations = true;
-      result.verdict.runs = result.cell.complete;
-      result.verdict.failed = result.cell.failures.size();
+  if (are_innovations(file)) result.innovations = result.cell.find<analysis::Innovations>();
+  at_place(formatted("{}: cell {}", file.path().string(), stored.label), [&] {
+    if (result.innovations != nullptr) {
+      judge_innovations(allowed, result);
+    } else {
+      result.answer = gate(result.verdict, allowed);
     }
-  }
-  result.answer = result.is_coloured
-                      ? GateAnswer::inconsistent
-                      : at_place(formatted("{}: cell {}", file.path().string(), stored.label),
-                                 [&] { return gate(result.verdict, allowed); });
+    return result.answer;
+  });
   return result;
 }
 
@@ -186,6 +247,7 @@ int gate_command(const Arguments& arguments) {
         file.path().string());
   }
   std::vector<GatedCell> all;
+  all.reserve(cells.size());  // no cell is copied, so that `innovations` stays valid
   for (const StoredCell& cell : cells) all.push_back(gated(file, cell, arguments, allowed));
   if (arguments.has("json")) {
     Json json = Json::array();

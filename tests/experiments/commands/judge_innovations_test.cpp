@@ -85,8 +85,9 @@ TEST_F(JudgeInnovations, BehindAGateArePutOnTheScaleWithoutOne) {
 
 /// NIS of two components, `factor` times those of a right filter, of a GPS and of a lidar; a gate
 /// of `limit` lets those of the lidar pass.
-std::string sensors_with_a_gate(double factor, double limit, int rows = 1500) {
-  RngStream draw({21, 0, 0, 0, Draw::test});
+std::string sensors_with_a_gate(double factor, double limit, int rows = 1500,
+                                std::uint64_t run = 0) {
+  RngStream draw({21, run, 0, 0, Draw::test});
   std::string text = "time_s,sensor,nis,nis_dof\n";
   for (int k = 0; k < rows; ++k) {
     for (const char* const sensor : {"gps", "lidar"}) {
@@ -100,11 +101,11 @@ std::string sensors_with_a_gate(double factor, double limit, int rows = 1500) {
 
 /// NIS of two components of two sensors; those of the camera are `share` of the one before and the
 /// rest of a new one.
-std::string sensors_of_which_one_remembers(double share) {
-  RngStream draw({22, 0, 0, 0, Draw::test});
+std::string sensors_of_which_one_remembers(double share, std::uint64_t run) {
+  RngStream draw({22, run, 0, 0, Draw::test});
   std::string text = "time_s,sensor,nis,nis_dof\n";
   double before = 2.0;
-  for (int k = 0; k < 4000; ++k) {
+  for (int k = 0; k < 400; ++k) {
     const double gps = -2.0 * std::log(1.0 - draw.uniform());
     before = share * before - 2.0 * (1.0 - share) * std::log(1.0 - draw.uniform());
     text += std::to_string(k) + ",gps," + to_text(gps) + ",2\n";
@@ -115,22 +116,53 @@ std::string sensors_of_which_one_remembers(double share) {
 
 // `montecarta gate` needs no truth for innovations, and none of the sensors may fail.
 TEST_F(JudgeInnovations, AreGatedBySizeAndWhitenessOfEverySensor) {
-  write("i.csv", sensors_with_a_gate(1.0, 1e9, 6000));
-  ASSERT_EQ(judged({"i.csv"}, {"--innovations"}).code, 0);
+  const auto judged_runs = [&](double factor, std::uint64_t runs, int rows) {
+    std::vector<std::string> files;
+    for (std::uint64_t run = 0; run < runs; ++run) {
+      files.push_back("i_" + std::to_string(run) + ".csv");
+      write(files.back(), sensors_with_a_gate(factor, 1e9, rows, run));
+    }
+    ASSERT_EQ(judged(files, {"--innovations"}).code, 0);
+  };
+  judged_runs(1.0, 12, 500);
   const Called right = call({"gate", "mine.h5", "--within", "1.2"});
   EXPECT_EQ(right.code, 0) << right.out << right.err;
   EXPECT_THAT(right.out, AllOf(HasSubstr("i.gps is consistent"), HasSubstr("i.lidar is ")));
   EXPECT_THAT(call({"gate", "mine.h5", "--json"}).out,
-              AllOf(testing::StartsWith("["), HasSubstr("i.gps"), HasSubstr("i.lidar")));
-  write("i.csv", sensors_with_a_gate(2.0, 1e9));
-  ASSERT_EQ(judged({"i.csv"}, {"--innovations"}).code, 0);
+              AllOf(testing::StartsWith("["), HasSubstr("i.gps"), HasSubstr("i.lidar"),
+                    HasSubstr("\"answer\": \"white\"")));
+  judged_runs(2.0, 12, 500);
   EXPECT_EQ(call({"gate", "mine.h5"}).code, 4);
-  write("i.csv", sensors_of_which_one_remembers(0.3));
-  ASSERT_EQ(judged({"i.csv"}, {"--innovations"}).code, 0);
-  const Called coloured = call({"gate", "mine.h5", "--within", "1.5"});
-  EXPECT_EQ(coloured.code, 4) << coloured.out << coloured.err;
-  EXPECT_THAT(coloured.out, HasSubstr("The innovations are not white."));
+  judged_runs(1.0, 1, 6000);
+  const Called one_drive = call({"gate", "mine.h5", "--within", "1.2"});
+  EXPECT_EQ(one_drive.code, 5) << one_drive.out;
+  EXPECT_THAT(one_drive.out, HasSubstr("The NIS alone of fewer than 10 drives"));
+  judged_runs(1.0, 400, 3);
+  EXPECT_THAT(call({"gate", "mine.h5", "--within", "2"}).out,
+              HasSubstr("too few innovations in a run to tell whether they are white"));
+}
+
+TEST_F(JudgeInnovations, ThatAreNotWhiteDoNotPassAGate) {
+  std::vector<std::string> files;
+  for (std::uint64_t run = 0; run < 12; ++run) {
+    files.push_back("i_" + std::to_string(run) + ".csv");
+    write(files.back(), sensors_of_which_one_remembers(0.3, run));
+  }
+  ASSERT_EQ(judged(files, {"--innovations"}).code, 0);
+  const Called called = call({"gate", "mine.h5", "--within", "1.5"});
+  EXPECT_EQ(called.code, 4) << called.out << called.err;
+  EXPECT_THAT(called.out, HasSubstr("The innovations are not white."));
+  EXPECT_THAT(call({"gate", "mine.h5", "--within", "1.5", "--cell", "i.camera", "--json"}).out,
+              HasSubstr("\"answer\": \"not white\""));
   EXPECT_EQ(call({"gate", "mine.h5", "--within", "1.5", "--cell", "i.gps"}).code, 0);
+}
+
+// A file of two filters is gated filter by filter.
+TEST_F(JudgeInnovations, OfSeveralFiltersAreGatedOneByOne) {
+  write("a_0.csv", "time_s,nis,nis_dof\n1,2,2\n2,1,2\n");
+  write("b_0.csv", "time_s,nis,nis_dof\n1,3,2\n2,1,2\n");
+  ASSERT_EQ(judged({"a_0.csv", "b_0.csv"}, {"--innovations"}).code, 0);
+  EXPECT_THAT(call({"gate", "mine.h5"}).err, HasSubstr("--cell CELL is needed"));
 }
 
 // The gate of one sensor is not that of another, and both are judged together.
