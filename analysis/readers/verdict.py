@@ -331,7 +331,8 @@ def usual_level(path, label):
     with h5py.File(path, "r") as file:
         if settings_of(file["cells"][label]).get("state") != "innovations":
             return 0.95
-        return 1 - 0.05 / (2 * len(file["cells"]))
+        sensors = {settings_of(cell).get("sensor", "") for cell in file["cells"].values()} - {""}
+        return 1 - 0.05 / (2 * max(len(sensors), 1))
 
 
 if __name__ == "__main__":

@@ -48,7 +48,7 @@ double white_deviate_of_nis(double level, double pairs, double skewness) {
 
 /// Two thirds powers of chi-square variables with the same numbers of degrees of freedom again and
 /// again, less their means, in their deviations.
-class NisScores {
+class StandardisedNis {
  public:
   double operator()(double nis, std::uint32_t dof) {
     const auto [found, is_new] = laws_.try_emplace(dof);
@@ -151,9 +151,9 @@ void InnovationSums::Totals::add(std::span<const double> nis, std::span<const st
     if (s == ends[stretch]) ++stretch;
     if (!std::isnan(there[s])) spreads_[stretch].add(there[s], dof[s]);
   }
-  NisScores scores;
+  StandardisedNis standardised;
   for (std::size_t s = 0; s < there.size(); ++s) {
-    if (!std::isnan(there[s])) there[s] = scores(there[s], dof[s]);
+    if (!std::isnan(there[s])) there[s] = standardised(there[s], dof[s]);
   }
   products_.add(there);
 }

@@ -211,7 +211,7 @@ class InnovationSums {
                     const GateScale* gate, Innovations& result) const;
 
     SummedError nis_;                       ///< {scan} sums of the NIS
-    LaggedProducts products_;               ///< of the scores of the NIS
+    LaggedProducts products_;               ///< of the standardised NIS
     std::vector<SpreadOfSquares> spreads_;  ///< {stretch} of the NIS
   };
   void merge(InnovationSums& next);

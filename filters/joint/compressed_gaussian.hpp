@@ -19,9 +19,9 @@ namespace montecarta::filters {
 /// coefficients, up to rounding.
 class Basis {
  public:
-  /// Computes the basis of `columns`, which are overwritten. For the invariant error the basis is
-  /// closed under a quarter turn of every point: vectors come in pairs q and J q, and the pair of
-  /// coefficients of a column turns like the points of the column.
+  /// Computes the basis of `columns`, which are overwritten. For the right-invariant error the
+  /// basis is closed under a quarter turn of every point: vectors come in pairs q and J q, and the
+  /// pair of coefficients of a column turns like the points of the column.
   void span(Eigen::MatrixXd& columns, Retraction retraction);
   void clear() { size_ = 0; }
 
@@ -45,8 +45,8 @@ class Basis {
 /// mean is m + W z, their covariance P + W Y W', and that with pose and near landmarks W X. The
 /// updates of z, X and Y are those of an unobserved point in a JointGaussian. So they are stored in
 /// it as additional points, stand-ins for the far landmarks, which begin with z = 0, Y = 0, W X =
-/// C. For the invariant error, W is closed under a quarter turn, and coefficients turn in pairs.
-/// For the left-invariant error all landmarks stay near, since every detection turns P.
+/// C. For the right-invariant error, W is closed under a quarter turn, and coefficients turn in
+/// pairs. For the left-invariant error all landmarks stay near, since every detection turns P.
 class CompressedGaussian {
  public:
   using ObservationStatus = JointGaussian::ObservationStatus;

@@ -223,8 +223,8 @@ void JointBelief::update_with(std::size_t k, const Detection& detection) {
       log_normal_density(distance, L, static_cast<double>(components_of(sensor_).size()));
 }
 
-/// Returns the points about which the system rotates. The rotation of the invariant error is about
-/// the estimate, since its covariance is transformed after every detection.
+/// Returns the points about which the system rotates. The rotation of the right-invariant error is
+/// about the estimate, since its covariance is transformed after every detection.
 ObservationPoint JointBelief::rotation_point(std::size_t slot) const {
   if (retraction_ == Retraction::right_invariant || !fixes_landmark(sensor_))
     return {system_.gaussian.pose().mean, system_.gaussian.mean_of(slot)};

@@ -12,8 +12,8 @@ namespace montecarta::filters {
 /// by one in the order of the scan.
 std::unique_ptr<SlamFilter> make_ekf_slam(const FilterSetup& setup);
 
-/// EKF-SLAM with the invariant error of Barrau, in which pose and map move as one rigid body, so
-/// that detections give no information about the unobservable pose of the map in the world.
+/// EKF-SLAM with the right-invariant error of Barrau, in which pose and map move as one rigid body,
+/// so that detections give no information about the unobservable pose of the map in the world.
 std::unique_ptr<SlamFilter> make_riekf_slam(const FilterSetup& setup);
 
 FilterKind ekf_slam_kind();

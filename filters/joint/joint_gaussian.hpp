@@ -94,12 +94,12 @@ struct NewPoint {
 /// covariance is kept in three parts, [pose cross'; cross map]. Landmarks are numbered in order of
 /// initialisation.
 ///
-/// The invariant error of Barrau rotates pose and map together: xi = e - J p e_heading for every
-/// point p, J = [0 -1; 1 0]. The covariance that is kept is that of e, in the map frame, and it
-/// equals that of xi at the present estimate. A prediction is then the same for both errors, since
-/// Fx leaves xi unchanged. A detection is not: the covariance of xi stays while the estimate moves,
-/// so that the covariance of e must be transformed. The left-invariant error moves a point by the
-/// same exponential, in the axes of the vehicle: with its heading the covariance of e turns.
+/// The right-invariant error of Barrau rotates pose and map together: xi = e - J p e_heading for
+/// every point p, J = [0 -1; 1 0]. The covariance that is kept is that of e, in the map frame, and
+/// it equals that of xi at the present estimate. A prediction is then the same for both errors,
+/// since Fx leaves xi unchanged. A detection is not: the covariance of xi stays while the estimate
+/// moves, so that the covariance of e must be transformed. The left-invariant error moves a point
+/// by the same exponential, in the axes of the vehicle: with its heading the covariance of e turns.
 class JointGaussian {
  public:
   /// Reserves memory for `room` landmarks, which grows if needed.
@@ -113,8 +113,8 @@ class JointGaussian {
   /// Returns `motion`, linearised at the estimate. Fx of several steps is again [1 0 a; 0 1 b; 0 0
   /// 1], where a and b are sums over the steps, so that one motion for many steps is exact.
   LinearisedMotion linearised(const MotionIncrement& motion) const;
-  /// Returns `motion`, linearised by sigma points of the heading before it (EQUATIONS (15.14)). An
-  /// invariant error is linear in itself across a motion, which equals linearised().
+  /// Returns `motion`, linearised by sigma points of the heading before it (EQUATIONS (15.14)).
+  /// For an invariant error this equals linearised().
   LinearisedMotion regressed(const MotionIncrement& motion) const;
   /// Predicted moments of the pose after `motion`.
   PoseMoments pose_after(const LinearisedMotion& motion) const;

@@ -14,6 +14,7 @@
 #include <cctype>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <string_view>
 #include <utility>
 #include <variant>
@@ -255,34 +256,39 @@ std::string studied_sentence(const StudyAnalysis& study) {
   return cells + "one recorded drive of " + time + ", " + runs + " times.";
 }
 
-/// Which cells have which answer: "Optimistic: ekf_slam, ukf_slam (NEES ratio 1.2 to 1.9)."
+/// Which cells have which answer: "Optimistic: ekf_slam, ukf_slam (NEES ratio 1.2 to 1.9)." Empty
+/// for innovations, which have more than one answer, and for bounds, which are no estimates.
 std::string found_sentences(const StudyAnalysis& study) {
+  const auto has_bound = [](const CellAnalysis& cell) { return has_bounds(cell.settings); };
+  if (!study.has_truth || study.imported.are_innovations() ||
+      std::ranges::any_of(study.cells, has_bound))
+    return "";
+  std::map<std::pair<Answer, std::string>, std::vector<const CellAnalysis*>> found;
+  for (const CellAnalysis& cell : study.cells) {
+    if (cell.verdict.answer == Answer::untested) continue;
+    found[{cell.verdict.answer, answer_in_words(cell.verdict)}].push_back(&cell);
+  }
   std::string text;
-  for (const Answer answer : {Answer::consistent, Answer::optimistic, Answer::conservative,
-                              Answer::inconsistent, Answer::undecided}) {
-    std::string cells;
+  for (const auto& [answer, cells] : found) {
+    std::string name = answer.second, labels;
     std::vector<double> ratios;
-    for (const CellAnalysis& cell : study.cells) {
-      if (cell.verdict.answer != answer) continue;
-      cells += (cells.empty() ? "" : ", ") + cell.label;
-      ratios.push_back(cell.verdict.ratio_estimate());
+    for (const CellAnalysis* cell : cells) {
+      labels += (labels.empty() ? "" : ", ") + cell->label;
+      ratios.push_back(cell->verdict.ratio_estimate());
     }
-    if (cells.empty()) continue;
     const auto [least, most] = std::ranges::minmax(ratios);
-    std::string name = name_of(answer);
     name.front() = static_cast<char>(std::toupper(name.front()));
-    text += " " + name + ": " + cells + " (NEES ratio " + compact(least) +
-            (ratios.size() == 1 ? "" : " to " + compact(most)) + ").";
+    text += " " + name + ": " + labels + " (" + study.imported.name_of_ratio() + " " +
+            compact(least) + (ratios.size() == 1 ? "" : " to " + compact(most)) + ").";
   }
   return text;
 }
 
 std::string markdown_page(const StudyAnalysis& study, const std::vector<Section>& sections,
                           const TextPairs& provenance) {
-  std::string page =
-      "# " + markdown_escape(study.title.empty() ? study.study_name : study.title) + "\n\n" +
-      markdown_escape(studied_sentence(study) + (study.has_truth ? found_sentences(study) : "")) +
-      "\n" + markdown_leading_figure(sections);
+  std::string page = "# " + markdown_escape(study.title.empty() ? study.study_name : study.title) +
+                     "\n\n" + markdown_escape(studied_sentence(study) + found_sentences(study)) +
+                     "\n" + markdown_leading_figure(sections);
   for (const std::string& fact : drive_facts(study)) page += "\n" + markdown_escape(fact) + "\n";
   for (const Section& section : sections) {
     if (section.is_for_terminal) page += markdown_section(section);

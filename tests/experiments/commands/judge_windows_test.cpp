@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Errors of increments over windows of time.
+#include "analysis/run/imported_state.hpp"
 #include "engine/records/result_file.hpp"
 #include "experiments/text/words.hpp"
 #include "tests/doubles/matchers.hpp"
@@ -145,18 +146,22 @@ TEST_F(JudgeWindows, OfOneEstimatorAreBoundedAndOfAnotherNot) {
                                             "1,5", "-o", "mine.h5", "--force"});
     EXPECT_EQ(called.code, 0) << called.err;
     const ResultFile file(folder_ / "mine.h5");
-    std::map<std::string, double> first;
+    std::map<std::string, std::vector<double>> all;
     for (const StoredCell& cell : file.cells()) {
+      EXPECT_EQ(analysis::has_bounds(cell.settings), cell.label.starts_with("filter."))
+          << cell.label;
       std::vector<double> P(9 * file.times().size());
       file.read(cell, "error_covariance", 0, std::span(P));
-      first[cell.label] = *std::ranges::find_if(P, [](double value) { return !std::isnan(value); });
+      std::ranges::replace_if(
+          P, [](double value) { return std::isnan(value); }, -1.0);
+      all[cell.label] = P;
     }
     if (files.size() > 1) {
       EXPECT_THAT(called.out,
                   AllOf(HasSubstr("increments of odometry.1s, odometry.5s is what was added"),
                         HasSubstr("no covariance for increments of filter.1s, filter.5s")));
     }
-    return first;
+    return all;
   };
   const auto together = covariances({"odometry_0.csv", "filter_0.csv"});
   EXPECT_EQ(together.size(), 4u);

@@ -36,7 +36,7 @@ sigma_bearing_deg = 1
 )";
 
 /// What is said of every drive of the robot: 0.3 m/s for 60 s.
-const std::string kOdometry = "By its odometry, the drive is of 60 s and 18 m.";
+const std::string kOdometry = "The odometry is of 60 s and 18 m.";
 
 /// A robot on a circle of 1.5 m, for 60 s. Its odometry is exact, with a row every 0.1 s; a
 /// reference with a fix a second is within the errors that it states.
