@@ -64,7 +64,7 @@ ConvertedArrays::ConvertedArrays(const fs::path& arrays) : path_(folder_.path() 
         "arrays to an HDF5 file",
         arrays);
   }
-  if (!outcome.is_done()) {
+  if (!outcome.has_succeeded()) {
     std::string words = outcome.last_line();
     const std::string name = std::string(kScript) + ": ";
     if (words.starts_with(name)) words.erase(0, name.size());
