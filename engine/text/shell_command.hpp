@@ -10,8 +10,9 @@ struct CommandOutcome {
   static constexpr int kNotFound = 127;  ///< exit code of the shell if there is no such program
   int exit_code = 0;                     ///< -1 if a signal ended it
   std::string output;
-  bool is_done() const { return exit_code == 0; }
-  /// The last line of the output that is not empty, or "it says nothing".
+  bool has_succeeded() const { return exit_code == 0; }
+  /// The last line of the output that is not empty, or "it says nothing". Lines of ^, by which
+  /// gnuplot marks the place of an error, do not count.
   std::string last_line() const;
 };
 

@@ -175,15 +175,14 @@ std::unique_ptr<EstimateSource> pair_of(const Arguments& arguments,
   return std::make_unique<EstimateFiles>(std::move(files), how);
 }
 
-/// Throws StudyError if a file is called like arrays, which are read from HDF5.
+/// Throws StudyError if a file is called like arrays, but is none that can be read.
 void refuse_other_arrays(const std::string& path) {
-  const std::string ending = std::filesystem::path(path).extension().string();
+  const std::string ending = extension_of(path);
   if (ending == ".npy") {
     throw StudyError(
-        "{}: a NumPy array (errors and covariances are read from one HDF5 file): call "
-        "montecarta.judge(errors, covariances) in Python, or write the file by h5py: "
-        "f = h5py.File(\"a.h5\", \"w\"); f[\"error\"] = errors; f[\"covariance\"] = covariances; "
-        "f.close()",
+        "{}: a NumPy array alone (errors and covariances are read from one file): write both by "
+        "numpy.savez(\"a.npz\", error=errors, covariance=covariances), or call "
+        "montecarta.judge(errors, covariances) in Python",
         path);
   }
   if (ending == ".h5" || ending == ".hdf5") {

@@ -21,30 +21,19 @@ except ImportError:
              "install python3-h5py, on Debian with 'apt-get install python3-h5py'; or convert by "
              "estimates.py, which needs NumPy alone")
 
-AXES = {"error": (3,), "mean": (3,), "covariance": (4,), "truth": (2, 3), "nis": (2,),
-        "nis_dof": (2,)}
-
-
-def names_in(given):
-    """The names of columns in an array of texts, with commas."""
-    return ",".join(str(np.ravel(name)[0] if np.size(name) else "") for name in np.ravel(given))
+AXES = {"covariance": (4,), "truth": (2, 3), "nis": (2,), "nis_dof": (2,)}
 
 
 def convert(paths):
     path, output = paths
     arrays = estimate_arrays.Arrays(path)
-    for name in AXES:
-        if name not in arrays.variables and f"{name}s" in arrays.variables:
+    for name in ("error", "mean", *AXES):
+        if name not in arrays.variables and f"{name}s" in arrays.members:
             raise ConversionError(f"{path}: has {name}s (an array is called {name}): rename it")
     found = {name: arrays.get(name, axes) for name, axes in AXES.items()}
-    states = found["error"] if found["mean"] is None else found["mean"]
-    if states is None:
-        there = ", ".join(sorted(name for name in arrays.variables if not name.startswith("__")))
-        raise ConversionError(f"{path}: no 'error', and no 'mean' (arrays are error, or mean and "
-                              f"truth, with covariance; the file has {there[:200] or 'none'}): "
-                              "save them under these names")
+    kind, found[kind] = arrays.states()
     if "time" in arrays.variables:
-        runs, scans = states.shape[:2]
+        runs, scans = found[kind].shape[:2]
         own = [arrays.times(run, runs, scans) for run in range(runs)]
         is_common = np.size(arrays.variables["time"]) == scans
         found["time"] = np.array(own[0] if is_common else own, dtype=float)
@@ -52,8 +41,9 @@ def convert(paths):
         for name, values in found.items():
             if values is not None:
                 file[name] = np.asarray(values, dtype=float)
-        if "names" in arrays.variables:
-            file.attrs["names"] = names_in(arrays.variables["names"])
+        names = arrays.name_texts()
+        if names is not None:
+            file.attrs["names"] = ",".join(names)
 
 
 if __name__ == "__main__":

@@ -14,6 +14,7 @@ from estimate_table import seconds
 
 KNOWN = ("mean", "error", "covariance", "truth", "time", "names", "nis", "nis_dof")
 MATLAB_HDF5 = b"MATLAB 7.3"  # a file of version 7.3 begins with it
+OF_OBJECT = ("s0", "s1", "s2", "arr")  # SciPy's record of an object of MATLAB: name, system, class
 
 
 class Arrays:
@@ -21,17 +22,17 @@ class Arrays:
 
     def __init__(self, path):
         self.path = path
+        self.members = []  # names of all arrays in the file, also of unknown ones
         if not path.lower().endswith(".mat"):
             self.variables = self._npz(path)
         else:
-            self.variables = (self._hdf5(path) if is_matlab_hdf5(path)
-                              else conversion.MatFile(path).variables)
+            self.variables = self._hdf5(path) if is_matlab_hdf5(path) else self._mat(path)
 
-    @staticmethod
-    def _npz(path):
+    def _npz(self, path):
         try:
             with open(path, "rb") as file:
                 stored = np.load(file, allow_pickle=False)
+                self.members = stored.files
                 return {name: stored[name] for name in KNOWN if name in stored}
         except Exception as fault:  # NumPy raises various errors for a damaged file
             if isinstance(fault, OSError) and not os.access(path, os.R_OK):
@@ -40,8 +41,20 @@ class Arrays:
             raise ConversionError(f"{path}: is damaged or no .npz of numbers ({fault}): save it by "
                                   "numpy.savez, without objects") from None
 
-    @staticmethod
-    def _hdf5(path):
+    def _mat(self, path):
+        """The variables of a MATLAB file up to version 7. Of an object, SciPy has a record that
+        names the variable and its class."""
+        variables = conversion.MatFile(path).variables
+        self.members = [name for name in variables if not name.startswith("__")]
+        for value in variables.values():
+            if not isinstance(value, np.ndarray) or value.dtype.names != OF_OBJECT:
+                continue
+            name, kind = (bytes(value[0][part]).decode() for part in ("s0", "s2"))
+            if name in KNOWN and kind == "string":
+                refuse_string_object(path, name)
+        return variables
+
+    def _hdf5(self, path):
         """The variables of a MATLAB file of version 7.3, which has their axes turned round."""
         try:
             import h5py
@@ -50,8 +63,10 @@ class Arrays:
                                   "python3-h5py, or save it with -v7") from None
         try:
             with h5py.File(path, "r") as file:
+                self.members = list(file)
                 found = {name: file[name] for name in KNOWN if name in file}
-                return {name: matlab_variable(file, stored) for name, stored in found.items()}
+                return {name: matlab_variable(file, stored, name)
+                        for name, stored in found.items()}
         except (OSError, KeyError, RuntimeError, TypeError, ValueError, AttributeError) as fault:
             raise ConversionError(f"{path}: is damaged or no MATLAB file ({fault}): save it "
                                   "again") from None
@@ -71,16 +86,33 @@ class Arrays:
                                   "it so")
         return values
 
+    def states(self):
+        """The name and the values of the states: `mean` or `error`."""
+        found = {name: self.get(name, (3,)) for name in ("mean", "error")}
+        given = [name for name, values in found.items() if values is not None]
+        if len(given) == 1:
+            return given[0], found[given[0]]
+        there = ", ".join(sorted(self.members))
+        fault = ("both 'error' and 'mean' (one of them is judged)" if given else
+                 f"neither 'error' nor 'mean' (the file has {there[:200] or 'no array'})")
+        raise ConversionError(f"{self.path}: {fault}: save mean, covariance and truth, or error "
+                              "and covariance")
+
+    def name_texts(self):
+        """The texts of `names`, or None."""
+        given = self.variables.get("names")
+        if given is None:
+            return None
+        texts = [str(np.ravel(name)[0] if np.size(name) else "") for name in np.ravel(given)]
+        return texts[0].split(",") if len(texts) == 1 else texts
+
     def names(self, count, is_error):
         """Names of the state's columns; without `names`, they are numbered."""
         prefix = "error_" if is_error else ""
-        given = self.variables.get("names")
-        if given is None:
+        texts = self.name_texts()
+        if texts is None:
             return tuple(f"{prefix or 'state_'}{k}" for k in range(count)), [
                 "no names: no component is wrapped as an angle (names = x_m, heading_rad, ...)"]
-        texts = [str(np.ravel(name)[0] if np.size(name) else "") for name in np.ravel(given)]
-        if len(texts) == 1:
-            texts = texts[0].split(",")
         names = tuple(prefix + text.strip() for text in texts)
         if len(names) != count or not all(name[len(prefix):] for name in names):
             raise ConversionError(f"{self.path}: 'names' has {len(names)} names of {count} columns "
@@ -108,13 +140,20 @@ def is_matlab_hdf5(path):
         return False  # which reading it will say
 
 
-def matlab_variable(file, stored):
+def refuse_string_object(path, name):
+    raise ConversionError(f"{path}: '{name}' is an object of MATLAB's class string (only MATLAB "
+                          "reads it): write 'x_m,y_m' in single quotes, and save it again")
+
+
+def matlab_variable(file, stored, name):
     """An array as MATLAB has it: numbers, a text, or a list of the texts of a cell array."""
     kind = stored.attrs.get("MATLAB_class", b"double")
     if kind == b"char":
         return "".join(map(chr, np.asarray(stored).ravel()))
     if kind == b"cell":
-        return [matlab_variable(file, file[one]) for one in np.asarray(stored).ravel()]
+        return [matlab_variable(file, file[one], name) for one in np.asarray(stored).ravel()]
+    if kind == b"string":
+        refuse_string_object(file.filename, name)
     return np.asarray(stored).T
 
 
@@ -128,17 +167,12 @@ def check_shape(arrays, name, found, wanted):
 def runs_in(path, options):
     """[(number of the run, Run)] in a file of arrays; the number is None for a truth of all."""
     arrays = Arrays(path)
-    mean, error = arrays.get("mean", (3,)), arrays.get("error", (3,))
-    if (mean is None) == (error is None):
-        raise ConversionError(f"{path}: {'neither' if mean is None else 'both'} 'mean' and 'error' "
-                              "(one of them is judged): save mean, covariance and truth, or error "
-                              "and covariance")
-    values = error if mean is None else mean
+    kind, values = arrays.states()
     runs, scans, width = values.shape
-    names, notes = arrays.names(width, mean is None)
+    names, notes = arrays.names(width, kind == "error")
     if "time" not in arrays.variables:
         notes.append("no time: scans are numbered 0, 1, 2, ... s")
-    layout = f"arrays, since it has {'error' if mean is None else 'mean'} {{run, scan, column}}"
+    layout = f"arrays, since it has {kind} {{run, scan, column}}"
 
     def run_of(number, states, covariances):
         return one_run(arrays, Run(path, layout, names, [], [], states, covariances, notes),
@@ -156,7 +190,7 @@ def runs_in(path, options):
                                   f"must be that of {','.join(names)} here; only a 'mean' of poses "
                                   "in space may have another): leave it out")
         return [(k, run_of(k, values[k], in_order(covariance[k], options))) for k in range(runs)]
-    if mean is None:
+    if kind == "error":
         raise ConversionError(f"{path}: 'error' needs no truth (an error is a difference from it): "
                               "judge the estimates without --truth")
     truth = arrays.get("truth", (2, 3))

@@ -8,6 +8,8 @@
 #include "engine/text/visible_text.hpp"
 #include "experiments/files/files.hpp"
 
+#include <algorithm>
+#include <cctype>
 #include <fstream>
 #include <iostream>
 #include <optional>
@@ -46,9 +48,17 @@ fs::path script() {
 
 }  // namespace
 
+std::string extension_of(const fs::path& path) {
+  std::string extension = path.extension().string();
+  std::ranges::transform(extension, extension.begin(),
+                         [](unsigned char c) { return std::tolower(c); });
+  return extension;
+}
+
 bool are_foreign_arrays(const fs::path& path) {
-  if (path.extension() == ".npz") return true;
-  return path.extension() == ".mat" && (is_of_matlab(path) || !h5::is_hdf5(path.string()));
+  const std::string extension = extension_of(path);
+  if (extension == ".npz") return true;
+  return extension == ".mat" && (is_of_matlab(path) || !h5::is_hdf5(path.string()));
 }
 
 ConvertedArrays::ConvertedArrays(const fs::path& arrays) : path_(folder_.path() / "arrays.h5") {
@@ -64,7 +74,7 @@ ConvertedArrays::ConvertedArrays(const fs::path& arrays) : path_(folder_.path() 
         "arrays to an HDF5 file",
         arrays);
   }
-  if (!outcome.is_done()) {
+  if (!outcome.has_succeeded()) {
     std::string words = outcome.last_line();
     const std::string name = std::string(kScript) + ": ";
     if (words.starts_with(name)) words.erase(0, name.size());

@@ -4,8 +4,12 @@
 #include "experiments/files/passing_folder.hpp"
 
 #include <filesystem>
+#include <string>
 
 namespace montecarta::experiments {
+
+/// The extension of a file's name in small letters, such as ".npz".
+std::string extension_of(const std::filesystem::path& path);
 
 /// Whether a file is called like arrays of NumPy (.npz), or is one of MATLAB (.mat). A .mat that
 /// another program wrote as HDF5 is none of MATLAB: its axes are not turned round.

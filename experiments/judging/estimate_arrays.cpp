@@ -79,6 +79,7 @@ EstimateArrays::EstimateArrays(std::filesystem::path path, std::string cell,
   if (runs == 0 || scans == 0 || d == 0) refuse(states_.name, "is empty: write a run at least");
   if (states_.name == "error") {
     require_axes(states_, {runs, scans, d}, "{run, scan, d}");
+    if (file_.has("mean")) refuse("mean", "is beside error (one is judged): remove one of them");
     if (truth_) refuse("truth", "is beside error (which one is it?): remove one of them");
   } else if (!truth_) {
     refuse("truth", "is missing (mean is compared with it): add it, or write error");

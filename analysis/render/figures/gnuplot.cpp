@@ -119,7 +119,7 @@ void run_gnuplot(const std::filesystem::path& directory, const std::vector<std::
                      ": not found (it draws the figures): install it, on Debian with 'apt-get "
                      "install gnuplot-nox'");
   }
-  if (outcome.is_done()) return;
+  if (outcome.has_succeeded()) return;
   std::string all;
   for (const std::string& name : scripts) all += (all.empty() ? "" : ", ") + name;
   throw RunError(

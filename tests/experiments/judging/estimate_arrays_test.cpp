@@ -73,6 +73,14 @@ TEST_F(EstimateArraysTest, HaveErrorsOfWhichNaNIsMissing) {
   EXPECT_FALSE(arrays.has_common_truths());
 }
 
+TEST_F(EstimateArraysTest, AreErrorsOrMeansButNotBoth) {
+  Arrays(path_)
+      .with("error", {1, 1, 1}, {1})
+      .with("mean", {1, 1, 1}, {1})
+      .with("covariance", {1, 1, 1, 1}, {1});
+  EXPECT_THAT(complaint(), HasSubstr("mean is beside error"));
+}
+
 // Octave writes no attributes.
 TEST_F(EstimateArraysTest, MayBeNamedByTheCaller) {
   Arrays(path_).with("error", {1, 1, 2}, {1, 2}).with("covariance", {1, 1, 2, 2}, {1, 0, 0, 1});
