@@ -26,10 +26,10 @@ namespace fs = std::filesystem;
 
 constexpr const char* kArchiveNote =
     "Filters are compared run by run, on the same drives with the same noise. The difference is "
-    "the mean of yours minus that of the archived filter, with its 95 % interval; 'ratio' is the "
-    "mean of yours divided by that of the archived filter; runs are won by yours where its number "
-    "is better, or, of the NEES ratio, lower. A difference has no interval if few runs decide the "
-    "mean ('heavy tail').";
+    "the mean of yours minus that of the archived filter, with its 95 % interval. The ratio is the "
+    "mean of yours divided by that of the archived filter. Yours wins the runs in which its number "
+    "is lower; a lower NEES ratio is not always better. If few runs decide the mean, the "
+    "difference has no interval ('heavy tail').";
 
 constexpr std::size_t kErrorsOfAPose = 3;  ///< components that a NEES of the archive judges
 
@@ -57,7 +57,7 @@ std::vector<ArchiveEntry> entries_of_world(const ResultFile& file, const Argumen
 }
 
 /// An entry with the scores of runs [first, last) alone, and its NEES ratio and failures over them.
-/// The verdict remains that of all its runs.
+/// Verdict and processor time remain those of all its runs.
 ArchiveEntry over_runs(ArchiveEntry entry, std::uint64_t first, std::uint64_t last) {
   last = std::min(last, entry.runs);
   if (first == 0 && last == entry.runs) return entry;
@@ -147,9 +147,9 @@ std::string note_on_shown_runs(const std::vector<ArchiveEntry>& all,
   for (std::size_t i = 0; i < shown.size(); ++i) {
     if (shown[i].runs == all[i].runs) continue;
     return formatted(
-        "Archived filters are shown over the {} runs that yours has too, but for their verdicts, "
-        "which are over all {} runs.",
-        shown[i].runs, all[i].runs);
+        "Archived filters are shown over the {} runs that yours has too, but for verdicts and "
+        "CPU/run, which are over all of theirs.",
+        shown[i].runs);
   }
   return "";
 }
