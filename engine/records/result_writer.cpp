@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <span>
+#include <unistd.h>
 
 namespace montecarta::engine {
 namespace {
@@ -147,10 +148,8 @@ void ResultWriter::finish() {
   result_.file.rename(path_, result_.existing);
 }
 
-void ResultWriter::discard() {
-  if (is_finished()) return;
-  std::error_code ignored;  // another attempt that was complete may have removed it
-  std::filesystem::remove(result_.file.path(), ignored);
+void ResultWriter::discard() noexcept {
+  if (!is_finished()) ::unlink(result_.file.path().c_str());  // another attempt may have removed it
 }
 
 }  // namespace montecarta::engine

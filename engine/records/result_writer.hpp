@@ -66,8 +66,9 @@ class ResultWriter {
   void suspend();
   /// Flushes and renames OUT.h5.part to OUT.h5. Throws std::logic_error if a run is missing.
   void finish();
-  /// Removes the unfinished file, for work without any result. Files of other attempts remain.
-  void discard();
+  /// Removes the unfinished file if that is possible, for work without any result. Files of other
+  /// attempts remain. Does not throw, so that an error may be under way.
+  void discard() noexcept;
 
  private:
   ResultWriter(const std::filesystem::path& path, OpenResult result, const StudyPlan& plan);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/runs/monte_carlo.hpp"
 
+#include "engine/core/unusable_filter.hpp"
 #include "engine/errors.hpp"
 #include "engine/runs/worker.hpp"
 
@@ -96,16 +97,9 @@ void run_worker(Session& session) {
   session.spare_threads.gain_one();
 }
 
-/// Removes the file of a session that ended by an error, if it began the work and completed no run:
-/// nothing is lost, and the work does not stand in the way of another study of that name.
-void discard_if_without_result(const StudyPlan& plan, const RunCounts& before,
-                               ResultWriter& writer) {
-  if (before.ended() == 0 && stored_counts(plan, writer).complete == 0) writer.discard();
-}
-
 /// Runs until no run is missing or a stop is requested.
-void run_missing(const StudyPlan& plan, const RunOptions& options, ResultWriter& writer,
-                 StopRequest& stop, Progress& progress) {
+void run_rounds(const StudyPlan& plan, const RunOptions& options, ResultWriter& writer,
+                StopRequest& stop, Progress& progress) {
   const std::vector<RecordLayout> layouts = layouts_of(plan, Detail::usual);
   const std::vector<RecordLayout> full_layouts = layouts_of(plan, Detail::full);
   const std::size_t n_workers = workers_for(plan, options.parallel, progress.counts().missing);
@@ -118,6 +112,23 @@ void run_missing(const StudyPlan& plan, const RunOptions& options, ResultWriter&
     if (runs == plan.runs_here()) return;
     progress.runs_ended(RunStatus::not_needed,
                         spare_what_is_enough(plan, runs, options.parallel, writer));
+  }
+}
+
+/// Runs until no run is missing or a stop is requested. After an error, removes the file if this
+/// session began it and no run has ended: nothing is lost, and the work does not stand in the way
+/// of another study of that name. Failed runs are results, unless the filter is unusable.
+void run_missing(const StudyPlan& plan, const RunOptions& options, ResultWriter& writer,
+                 StopRequest& stop, Progress& progress) {
+  const bool is_new = progress.counts().ended() == 0;
+  try {
+    run_rounds(plan, options, writer, stop, progress);
+  } catch (const UnusableFilter&) {
+    if (is_new && stored_counts(plan, writer).complete == 0) writer.discard();
+    throw;
+  } catch (...) {
+    if (is_new && stored_counts(plan, writer).ended() == 0) writer.discard();
+    throw;
   }
 }
 
@@ -162,12 +173,7 @@ RunOutcome run_study(const StudyPlan& plan, const RunOptions& options) {
     if (left) *left -= stopwatch.seconds();
     Progress progress(options.quiet ? ProgressStyle::none : options.progress, before);
     const Watch watch(interruption, left, stop, progress);
-    try {
-      run_missing(plan, options, writer, stop, progress);
-    } catch (...) {
-      discard_if_without_result(plan, before, writer);
-      throw;
-    }
+    run_missing(plan, options, writer, stop, progress);
   }
   RunOutcome outcome{.counts = stored_counts(plan, writer)};
   if (outcome.counts.missing > 0) outcome.stopped = stop.reason();

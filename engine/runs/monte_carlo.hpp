@@ -52,8 +52,9 @@ struct RunOptions {
 
 /// Runs the missing runs of the plan and stores them. Ends early on SIGINT, SIGTERM or when the
 /// time budget is exhausted; then the file can be resumed. Throws StudyError if the user must act
-/// first, and RunError if the machine fails. Runs stored until then can be resumed too, but work
-/// that this call began leaves no file if none of its runs is complete.
+/// first, and RunError if the machine fails. Runs stored until then can be resumed too. Work that
+/// this call began leaves no file if none of its runs has ended or, after UnusableFilter, if none
+/// is complete.
 RunOutcome run_study(const StudyPlan& plan, const RunOptions& options);
 
 }  // namespace montecarta::engine

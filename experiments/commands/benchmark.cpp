@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/core/unusable_filter.hpp"
 #include "engine/errors.hpp"
 #include "engine/formatted.hpp"
 #include "engine/records/check_file.hpp"
@@ -110,25 +111,23 @@ TextPairs program_files_of(const Study& study) {
   return files_of_command(command->second);
 }
 
-/// A file of the program that is not as it was before; "" if there is none. Throws StudyError if
-/// one is gone.
+/// A stored file of the program that is another one now; "" if there is none. A file that has
+/// appeared since, such as a log that the program writes, does not count. Throws StudyError if a
+/// stored one is gone.
 std::string changed_file(const TextPairs& before, const TextPairs& now, const BenchmarkTask& task) {
-  const auto is_called = [](const std::string& name) {
-    return [&](const auto& file) { return file.first == name; };
-  };
+  std::string changed;
   for (const auto& [name, sha] : before) {
-    if (std::ranges::any_of(now, is_called(name))) continue;
-    throw StudyError(
-        "{}: no such file (it was a part of the program of {}, and paths are relative to the "
-        "current folder): call montecarta in the folder where it was called before, or give the "
-        "filter another label",
-        name, task.name());
+    const auto found = std::ranges::find(now, name, &TextPairs::value_type::first);
+    if (found == now.end()) {
+      throw StudyError(
+          "{}: no such file (it was a part of the program of {}, and paths are relative to the "
+          "current folder): call montecarta in the folder where it was called before, or give the "
+          "filter another label",
+          name, task.name());
+    }
+    if (changed.empty() && found->second != sha) changed = name;
   }
-  for (const auto& [name, sha] : now) {
-    const auto found = std::ranges::find_if(before, is_called(name));
-    if (found == before.end() || found->second != sha) return name;
-  }
-  return "";
+  return changed;
 }
 
 /// Throws the StudyError of `holder`, which has a result or work of another study than the task.
@@ -149,22 +148,45 @@ std::string changed_file(const TextPairs& before, const TextPairs& now, const Be
       holder, all);
 }
 
-/// Returns whether there is a result of the task. One that an earlier version of its program made
-/// is removed. Throws StudyError if there is a result of another study.
+/// The entry of a task; nullopt if there is none. Throws StudyError if it is of another study.
+std::optional<ArchiveEntry> stored_entry(const BenchmarkWorker& worker, const BenchmarkTask& task) {
+  if (!is_there(task.entry)) return std::nullopt;
+  std::optional<ArchiveEntry> entry;
+  try {
+    entry = read_entry(task.entry);
+  } catch (const StudyError&) {
+    if (is_there(task.entry)) throw;
+    return std::nullopt;  // another worker has removed it meanwhile
+  }
+  if (entry->study_sha256 != sha256(resolved_text(worker.study(task))))
+    refuse_other_study(worker, task, task.entry, entry->study_sha256, entry->runs);
+  return entry;
+}
+
+/// The file of its program that has changed since a result was computed; "" if there is none.
+std::string changed_since(const ArchiveEntry& entry, const BenchmarkWorker& worker,
+                          const BenchmarkTask& task) {
+  return changed_file(entry.program_files, program_files_of(worker.study(task)), task);
+}
+
+/// Returns whether there is a result of the task and of its program as it is now.
 bool has_result(const BenchmarkWorker& worker, const BenchmarkTask& task) {
-  if (!is_there(task.entry)) return false;
-  const ArchiveEntry entry = read_entry(task.entry);
-  const Study study = worker.study(task);
-  if (entry.study_sha256 != sha256(resolved_text(study)))
-    refuse_other_study(worker, task, task.entry, entry.study_sha256, entry.runs);
-  const std::string changed = changed_file(entry.program_files, program_files_of(study), task);
-  if (changed.empty()) return true;
-  std::cerr << formatted(
-      "montecarta: {} has changed since the result of {} was computed: it is computed again\n",
-      changed, task.name());
+  const std::optional<ArchiveEntry> entry = stored_entry(worker, task);
+  return entry && changed_since(*entry, worker, task).empty();
+}
+
+/// Removes a result that an earlier version of the program made. Other workers remove it too, so
+/// the task must be claimed.
+void remove_stale_result(const BenchmarkWorker& worker, const BenchmarkTask& task) {
+  const std::optional<ArchiveEntry> entry = stored_entry(worker, task);
+  if (!entry) return;
+  const std::string changed = changed_since(*entry, worker, task);
+  if (changed.empty()) return;
+  worker.work.say(
+      formatted("{} has changed since the result of {} was computed: it is computed again", changed,
+                task.name()));
   fs::remove(task.result());  // first, because an entry can be made of it
   fs::remove(task.entry);
-  return false;
 }
 
 bool has_complete_runs(const fs::path& path) {
@@ -198,9 +220,8 @@ void remove_stale_work(const BenchmarkWorker& worker, const BenchmarkTask& task)
     if (stored->study_sha256 == sha256(resolved_text(study))) {
       const std::string changed = changed_file(program_files_in(stored->provenance), files, task);
       if (changed.empty()) continue;
-      std::cerr << formatted(
-          "montecarta: {} has changed since work on {} began: it is begun anew\n", changed,
-          task.name());
+      worker.work.say(formatted("{} has changed since work on {} began: it is begun anew", changed,
+                                task.name()));
     } else if (has_complete_runs(file)) {
       refuse_other_study(worker, task, file, stored->study_sha256, stored->study_runs);
     }
@@ -213,9 +234,9 @@ RunOutcome run_or_continue(const BenchmarkTask& task, const StudyPlan& plan,
                            const RunOptions& options) {
   try {
     return run_summed_study(plan, options);
-  } catch (const UnansweredProgram& error) {
-    throw UnansweredProgram("{}: {}; --world NAME,... leaves out worlds that it does not model",
-                            task.name(), error.what());
+  } catch (const UnusableFilter& error) {
+    throw UnusableFilter("{}: {}; --world NAME,... leaves out worlds that it does not model",
+                         task.name(), error.what());
   }
 }
 
@@ -243,24 +264,38 @@ int compute(const BenchmarkWorker& worker, const BenchmarkTask& task, WorkClaim&
   return work.finish(outcome);
 }
 
-/// Computes a result as compute() does. The claim is withdrawn after an error that the user must
-/// mend, so that no number of attempts stands in the way of the mended filter.
+/// Whether an error remains until the user mends its cause.
+bool is_for_user(const std::exception& error) {
+  return dynamic_cast<const StudyError*>(&error) != nullptr ||
+         dynamic_cast<const UnusableFilter*>(&error) != nullptr;
+}
+
+/// Computes a result as compute() does. After an error that the user must mend, removes the folder
+/// of work that has stored nothing, and withdraws the claim, so that no number of attempts stands
+/// in the way of the mended filter.
 int compute_or_withdraw(const BenchmarkWorker& worker, const BenchmarkTask& task,
                         WorkClaim& claim) {
   try {
     return compute(worker, task, claim);
-  } catch (const UnansweredProgram&) {
-    claim.withdraw();
-    throw;
-  } catch (const StudyError&) {
-    claim.withdraw();
+  } catch (const std::exception& error) {
+    if (is_for_user(error)) {
+      remove_empty_work(task.result());
+      claim.withdraw();
+    }
     throw;
   }
 }
 
-/// Makes a result that is claimed, and removes the claims on it. Returns as compute() does.
+/// Makes a result that is claimed, unless another worker has made it meanwhile, and removes the
+/// claims on it. Returns as compute() does.
 int make_claimed(const BenchmarkWorker& worker, const BenchmarkTask& task,
                  std::unique_ptr<WorkClaim> claim) {
+  try {
+    remove_stale_result(worker, task);
+  } catch (...) {
+    claim->withdraw();
+    throw;
+  }
   return SharedWork::make_claimed(
       std::move(claim), [&](WorkClaim& own) { return compute_or_withdraw(worker, task, own); });
 }
@@ -292,6 +327,12 @@ std::string date_of(const fs::path& path) {
   return text.data();
 }
 
+/// Whether nobody can know if the program of a result has changed since.
+bool is_of_unknown_files(const BenchmarkTask& task) {
+  const ArchiveEntry entry = read_entry(task.entry);
+  return starts_program(entry.filter) && entry.program_files.empty();
+}
+
 /// Says which results are kept, in a line for each filter.
 void say_kept(const BenchmarkWorker& worker, std::span<const BenchmarkTask> kept) {
   constexpr std::size_t kMostNamed = 3;
@@ -304,15 +345,34 @@ void say_kept(const BenchmarkWorker& worker, std::span<const BenchmarkTask> kept
       dates.push_back(date_of(task.entry));
     }
     const auto [first, last] = std::ranges::minmax(dates);
+    const bool is_unknown = std::ranges::any_of(kept.first(worlds.size()), is_of_unknown_files);
     worker.work.say(formatted(
-        "{} in {}: result of {} kept, not computed again", label,
+        "{} in {}: result of {} kept, not computed again{}", label,
         worlds.size() > kMostNamed ? formatted("{} worlds", worlds.size()) : joined(worlds),
-        first == last ? first : first + " to " + last));
+        first == last ? first : first + " to " + last,
+        is_unknown ? " (no file of its program is stored, so a change of it is not noticed)" : ""));
     kept = kept.subspan(worlds.size());
   }
 }
 
-/// Works until no task is left that no other process is at. Filters are run in their order.
+/// Claims the tasks one by one, in the order of filters, and makes those that no other process is
+/// at.
+int make_free_tasks(const BenchmarkWorker& worker, std::span<const BenchmarkTask> tasks) {
+  for (const BenchmarkTask& task : tasks) {
+    if (has_result(worker, task)) continue;
+    auto claim = claim_free({task.entry}, worker.work.patience());
+    if (!claim) {
+      if (is_there(task.entry))
+        worker.work.say(task.name() + ": another process has claimed it; the old result remains");
+      continue;
+    }
+    const int code = make_claimed(worker, task, std::move(claim));
+    if (code != kDone) return code;
+  }
+  return kDone;
+}
+
+/// Works until no task is left that no other process is at.
 int run_tasks(const BenchmarkWorker& worker, std::span<const BenchmarkTask> tasks) {
   std::vector<BenchmarkTask> kept;
   for (const BenchmarkTask& task : tasks) {
@@ -321,13 +381,8 @@ int run_tasks(const BenchmarkWorker& worker, std::span<const BenchmarkTask> task
     if (has_result(worker, task)) kept.push_back(task);
   }
   say_kept(worker, kept);
-  for (const BenchmarkTask& task : tasks) {
-    if (is_there(task.entry)) continue;
-    auto claim = claim_free({task.entry}, worker.work.patience());
-    if (!claim) continue;
-    const int code = make_claimed(worker, task, std::move(claim));
-    if (code != kDone) return code;
-  }
+  const int code_of_free = make_free_tasks(worker, tasks);
+  if (code_of_free != kDone) return code_of_free;
   for (auto missing = missing_of(tasks); !missing.empty(); missing = missing_of(tasks)) {
     ClaimSearch found = watch_others(paths_in(missing), worker.work.patience());
     if (!found.claim) {

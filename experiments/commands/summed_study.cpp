@@ -145,14 +145,6 @@ void remove_work(const fs::path& folder) {
   fs::remove(folder, not_empty);
 }
 
-/// Removes the folder of work that has stored nothing.
-void remove_empty_work(const fs::path& folder) {
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    if (is_stored_work(entry.path().filename().string())) return;
-  }
-  remove_work(folder);
-}
-
 /// Throws StudyError if a finished result is not that of this plan.
 void require_result_of(const StudyPlan& plan, const RunOptions& options) {
   const ResultDescription stored = read_description(options.output);
@@ -192,6 +184,16 @@ std::optional<PosixFile> open_work(const fs::path& folder, const StudyPlan& plan
 }  // namespace
 
 fs::path groups_of(fs::path output) { return output += ".groups"; }
+
+void remove_empty_work(const fs::path& output) {
+  const fs::path folder = groups_of(output);
+  std::error_code ignored;  // nothing here may take the place of the error that is under way
+  for (fs::directory_iterator entry(folder, ignored), end; entry != end; entry.increment(ignored)) {
+    if (is_stored_work(entry->path().filename().string())) return;
+  }
+  for (const fs::path& path : {replaces_in(folder), lock_in(folder), folder})
+    fs::remove(path, ignored);
+}
 
 std::vector<fs::path> begun_files(const fs::path& output) {
   const fs::path folder = groups_of(output);
@@ -274,7 +276,7 @@ RunOutcome run_or_continue(const StudyPlan& plan, const RunOptions& options,
   try {
     return run_groups(plan, options, folder);
   } catch (...) {
-    remove_empty_work(folder);
+    if (!options.attempt) remove_empty_work(options.output);
     throw;
   }
 }

@@ -19,6 +19,10 @@ RunOutcome run_summed_study(const StudyPlan& plan, const RunOptions& options);
 /// The folder OUT.h5.groups of the unfinished work on the result `output`.
 std::filesystem::path groups_of(std::filesystem::path output);
 
+/// Removes the folder of the unfinished work on `output` if it has stored neither runs nor sums. No
+/// other process may be at that work. Errors are ignored.
+void remove_empty_work(const std::filesystem::path& output);
+
 /// The result files of the unfinished work on `output`: finished groups and the rows of the group
 /// at hand, by their first runs; none if there is no such work, or `output` exists.
 std::vector<std::filesystem::path> begun_files(const std::filesystem::path& output);

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/external/external_filter.hpp"
 
+#include "engine/core/unusable_filter.hpp"
 #include "engine/errors.hpp"
 #include "engine/records/fingerprint.hpp"
 #include "experiments/files/files.hpp"
 #include "experiments/text/words.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <utility>
 
@@ -97,7 +99,7 @@ void ExternalFilter::send_start(const RunStart& start) const {
   } catch (const ProgramError& error) {
     if (stop_ != nullptr && stop_->is_set()) throw;
     if (command_.starts->any_was_answered || ++command_.starts->failed < kHopelessStarts) throw;
-    throw UnansweredProgram(
+    throw UnusableFilter(
         "program '{}': none of its first {} starts was answered ({}): mend the program and give "
         "the same command again",
         command_.words.front(), kHopelessStarts, error.what());
@@ -144,6 +146,28 @@ Parameter command_option() {
       .example = "\"python3 my_filter.py\""};
 }
 
+/// The words of a command of a shell; none if a quote is not closed.
+std::vector<std::string> words_for_shell(const std::string& command) {
+  try {
+    return quoted_words(command);
+  } catch (const StudyError&) {
+    return {};
+  }
+}
+
+/// Adds words of a command to `all`: those given and, where one has white space, those within.
+/// Leaves out files to which a shell writes: `2>>log.txt`, `> log.txt`.
+void add_words(const std::vector<std::string>& words, std::vector<std::string>& all) {
+  bool is_written = false;
+  for (const std::string& word : words) {
+    const bool has_blanks = word.find_first_of(" \t\r\n") != word.npos;
+    const bool is_redirection = !has_blanks && word.find('>') != word.npos;
+    if (!is_written && !is_redirection) all.push_back(word);
+    is_written = is_redirection && word.ends_with('>');
+    if (has_blanks) add_words(words_for_shell(word), all);
+  }
+}
+
 }  // namespace
 
 bool starts_program(const FilterKind& filter) { return starts_program(filter.name); }
@@ -151,7 +175,10 @@ bool starts_program(std::string_view filter) { return filter == kExternal; }
 
 std::vector<std::pair<std::string, std::string>> files_of_command(const std::string& command) {
   std::vector<std::pair<std::string, std::string>> files;
-  for (const std::string& word : quoted_words(command)) {
+  std::vector<std::string> words;
+  add_words(quoted_words(command), words);
+  for (const std::string& word : words) {
+    if (std::ranges::count(files, word, &std::pair<std::string, std::string>::first) > 0) continue;
     std::error_code none;
     const std::filesystem::path path = std::filesystem::canonical(word, none);
     if (none || !std::filesystem::is_regular_file(path, none)) continue;

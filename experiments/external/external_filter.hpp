@@ -2,7 +2,6 @@
 #pragma once
 
 #include "engine/core/slam_filter.hpp"
-#include "engine/errors.hpp"
 #include "experiments/external/child_process.hpp"
 #include "experiments/external/messages.hpp"
 #include "filters/setup/filter_kind.hpp"
@@ -35,15 +34,8 @@ struct ExternalCommand {
   };
   std::shared_ptr<Starts> starts = std::make_shared<Starts>();
 };
-/// The study is stopped after this many failed starts if no start has been answered.
+/// UnusableFilter stops the study after this many failed starts if no start has been answered.
 inline constexpr int kHopelessStarts = 8;
-
-/// The error that stops it. Nothing that such a program did is a result, and other workers would
-/// end by the same error until the program is mended.
-class UnansweredProgram : public RunError {
- public:
-  using RunError::RunError;
-};
 
 /// A filter in any language: a process that receives the controls and detections of each run and
 /// answers with its estimates (EXTERNAL_FILTERS.md). It is started in the first run and kept for
@@ -103,7 +95,8 @@ bool starts_program(const FilterKind& filter);
 bool starts_program(std::string_view filter);
 
 /// Pairs (word, SHA-256): the words of a command that are files now, relative to the current
-/// folder. Programs of the system, in /usr/bin and /usr/lib, do not count.
+/// folder. A word with white space, such as that of a shell behind -c, is split in turn. Programs
+/// of the system, in /usr/bin and /usr/lib, and files to which a shell writes by > do not count.
 std::vector<std::pair<std::string, std::string>> files_of_command(const std::string& command);
 
 /// The kind of external programs: `cell = external command="python3 my_filter.py" label=mine`.

@@ -182,6 +182,33 @@ TEST_F(MonteCarlo, EndsAllWorkersWhenOneMeetsAnError) {
   }
 }
 
+/// A filter that fails in every run.
+class FailingFilter : public ScriptedFilter {
+ public:
+  using ScriptedFilter::ScriptedFilter;
+  void predict(const StepContext&, const Control&, double) override {
+    throw std::runtime_error("fails");
+  }
+};
+
+/// An error leaves the failed runs, which are results, and no file where no run has ended.
+TEST_F(MonteCarlo, KeepsFailedRunsAfterAnError) {
+  StudyPlan plan = scripted_study(40, 10);
+  plan.cells = {scripted_cell("failing", {.particles = 5})};
+  plan.cells[0].make_filter = [] {
+    return std::make_unique<FailingFilter>(ScriptedFilter::Script{.particles = 5});
+  };
+  plan.drives = std::make_shared<TornDrives>(10);  // ends by an error in run 30
+  const RunOptions how = options("study.h5");
+  EXPECT_THROW(run_study(plan, how), RunError);
+  const ResultFile file(folder / "study.h5.part");
+  EXPECT_EQ(std::ranges::count(file.status(file.cells()[0]), RunStatus::failed), 30);
+
+  plan.first_run = 30;
+  EXPECT_THROW(run_study(plan, options("none.h5")), RunError);
+  EXPECT_FALSE(std::filesystem::exists(folder / "none.h5.part"));
+}
+
 constexpr std::uint64_t kRunsOfRounds = 150;
 
 /// The small cell has enough at 64, the large one never.

@@ -21,12 +21,14 @@ class Benchmark : public Program {
       words.insert(words.end(), {"--world", "corridor_easy,known_map"});
     return call_with(std::move(words), more);
   }
-  /// Runs a program, tests/doubles/scripted_program.cpp in a mode, whose command names mine.txt.
+  /// Runs a program by a command.
+  Called run_command(const std::string& command) const {
+    return call({"benchmark", "out", "--runs", "70", "--world", "corridor_easy", "--allow-external",
+                 "--cell", "external label=mine command=" + in_quotes(command)});
+  }
+  /// Runs tests/doubles/scripted_program.cpp in a mode, by a command that names mine.txt.
   Called run_program(const std::string& mode) const {
-    return call(
-        {"benchmark", "out", "--runs", "70", "--world", "corridor_easy", "--allow-external",
-         "--cell",
-         "external label=mine command='" MONTECARTA_SCRIPTED_PROGRAM " " + mode + " mine.txt'"});
+    return run_command(MONTECARTA_SCRIPTED_PROGRAM " " + mode + " mine.txt");
   }
   /// The line of a text that begins with `begin`, from its first number on.
   static std::string numbers_of(const std::string& text, const std::string& begin) {
@@ -138,6 +140,47 @@ TEST_F(Benchmark, KeepsAResultUntilAFileOfItsProgramChanges) {
   EXPECT_EQ(gone.code, 2);
   EXPECT_THAT(gone.err, HasSubstr("mine.txt: no such file"));
   EXPECT_TRUE(exists("out/corridor_easy/mine.h5"));
+}
+
+TEST_F(Benchmark, NoticesAChangedFileInTheCommandOfAShell) {
+  const std::string command = "sh -c '" MONTECARTA_SCRIPTED_PROGRAM
+                              " good -1 mine.txt mine.txt 2>>log.txt 3> other.txt' \"it's mine\"";
+  write("mine.txt", "first");
+  for (const char* log : {"log.txt", "other.txt"}) write(log, "");
+  ASSERT_EQ(run_command(command).code, 0);
+  EXPECT_THAT(text_of("out/corridor_easy/mine.json"), HasSubstr(sha256("first")));
+  for (const char* log : {"log.txt", "other.txt"}) write(log, "a line\n");
+  EXPECT_THAT(run_command(command).err, HasSubstr("kept"));
+  write("mine.txt", "second");
+  EXPECT_THAT(run_command(command).err, HasSubstr("mine.txt has changed since the result of mine"));
+}
+
+TEST_F(Benchmark, KeepsAResultIfAFileAppearsOrNoneIsKnown) {
+  write("mine.txt", "");
+  ASSERT_EQ(run_program("good -1 run.log").code, 0);
+  write("run.log", "of the program");
+  EXPECT_THAT(run_program("good -1 run.log").err, HasSubstr("kept, not computed again\n"));
+
+  alter("out/corridor_easy/mine.json", "\"program_files\"", "\"absent\"");
+  const std::string entry = text_of("out/corridor_easy/mine.json");
+  EXPECT_THAT(run_program("good -1 run.log").err, HasSubstr("no file of its program is stored"));
+  EXPECT_EQ(text_of("out/corridor_easy/mine.json"), entry);
+}
+
+TEST_F(Benchmark, RemovesAnOldResultOnlyUnderAClaim) {
+  write("mine.txt", "first");
+  ASSERT_EQ(run_program("good -1").code, 0);
+  const std::string entry = text_of("out/corridor_easy/mine.json");
+  write("mine.txt", "second");
+  write("out/corridor_easy/mine.json.claim.1", "at work: another 1\n");
+  const Called other = run_program("good -1");
+  EXPECT_EQ(other.code, 0);
+  EXPECT_THAT(other.err, HasSubstr("mine in corridor_easy: another process has claimed it"));
+  EXPECT_EQ(text_of("out/corridor_easy/mine.json"), entry);
+  EXPECT_TRUE(exists("out/corridor_easy/mine.h5"));
+  std::filesystem::remove(folder_ / "out/corridor_easy/mine.json.claim.1");
+  EXPECT_EQ(run_program("good -1").code, 0);
+  EXPECT_THAT(text_of("out/corridor_easy/mine.json"), HasSubstr(sha256("second")));
 }
 
 TEST_F(Benchmark, OfAProgramThatNeverAnswersLeavesNothing) {
