@@ -34,7 +34,7 @@ constexpr const char* kDecimalPoints = "write decimal points, and commas between
 
 fs::path program_path() {
   std::error_code none;
-  const fs::path program = fs::read_symlink("/proc/self/exe", none);
+  fs::path program = fs::read_symlink("/proc/self/exe", none);
   const std::string folder = program.parent_path().string();
   if (!folder.ends_with(formatted("/{}", kWiderFolder))) return program;
   const std::string prefix = folder.substr(0, folder.size() - std::strlen(kWiderFolder));
