@@ -3,6 +3,7 @@
 
 #include "analysis/statistics/run_mean.hpp"
 #include "analysis/statistics/spread.hpp"
+#include "analysis/study/prose.hpp"
 #include "analysis/study/study_analysis.hpp"
 #include "analysis/study/study_comparison.hpp"
 #include "engine/errors.hpp"
@@ -138,7 +139,9 @@ void print_differences(const Comparisons& comparisons) {
                        output_width());
   print_table(std::cout, difference_table(comparisons), output_width());
   const std::string pairs = analysis::pairs_of_all_rows(comparisons);
-  if (!pairs.empty()) std::cout << "\nRuns in each comparison: " << pairs << ".\n";
+  if (pairs.empty()) return;
+  std::cout << '\n'
+            << wrapped(analysis::prose("comparison", "pairs", {{"pairs", pairs}}), output_width());
 }
 
 /// Says over which runs the numbers of archived filters are, if these are not all of theirs.
