@@ -221,8 +221,11 @@ std::vector<Section::Block> leads_of(const StudyAnalysis& study) {
   for (const CellAnalysis& cell : study.cells) {
     const Innovations* found = cell.find<Innovations>();
     if (found == nullptr) {
-      leads.emplace_back(Section::Lead{cell.label + ", innovations: not judged, since none has a "
-                                                    "covariance that is positive definite."});
+      leads.emplace_back(Section::Lead{
+          cell.label + (study.imported.are_innovations()
+                            ? ", innovations: not judged, since none has a covariance that is "
+                              "positive definite."
+                            : ", innovations: not judged, since it has none.")});
       continue;
     }
     std::string words = cell.label + ", innovations: " + whiteness_in_words(*found);

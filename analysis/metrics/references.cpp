@@ -153,7 +153,9 @@ std::string fixes_text(const StudyAnalysis& study) {
   for (const JudgedReference& reference : study.references) {
     text += (text.empty() ? "" : ", ") + reference.name + " has " +
             std::to_string(reference.fixes) + " fixes within " + drives_in_words(study, reference);
-    if (reference.in_gaps > 0) text += " and " + std::to_string(reference.in_gaps) + " in gaps";
+    if (reference.in_gaps > 0) text += ", " + std::to_string(reference.in_gaps) + " in gaps";
+    if (reference.outside > 0)
+      text += ", " + std::to_string(reference.outside) + " before or after the stored poses";
   }
   return text;
 }

@@ -37,7 +37,10 @@ PathAtFixes::PathAtFixes(const ReferencePath& reference, std::span<const double>
   used_.name = reference.name;
   for (std::size_t f = 0; f < reference.time.size(); ++f) {
     const double time = reference.time[f];
-    if (times.empty() || !(time >= 0.0 && time <= times.back())) continue;
+    if (times.empty() || !(time >= 0.0 && time <= times.back())) {
+      ++outside_;
+      continue;
+    }
     const bool is_first = places_.empty() && in_gaps_ == 0;
     if (is_first) has_start_ = are_same(reference.position[f], start);
     const FixPlace place = place_of(time, times);

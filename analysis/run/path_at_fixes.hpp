@@ -36,6 +36,8 @@ class PathAtFixes {
   const std::string& name() const { return used_.name; }
   /// Number of fixes within the drive that are not used, because they lie in a longer gap.
   std::size_t in_gaps() const { return in_gaps_; }
+  /// Number of fixes before time 0 or after the last row, which are not used either.
+  std::size_t outside() const { return outside_; }
   /// Whether the reference states its own errors.
   bool has_errors() const { return has_errors_; }
   /// [s] {fix used} time of the fix.
@@ -71,7 +73,7 @@ class PathAtFixes {
   Pose start_;
   Eigen::Matrix3d start_covariance_;
   ReferencePath used_;
-  std::size_t in_gaps_ = 0;
+  std::size_t in_gaps_ = 0, outside_ = 0;
   bool has_errors_;
   bool has_start_ = false;
   std::vector<FixPlace> places_;

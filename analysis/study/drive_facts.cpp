@@ -5,6 +5,7 @@
 #include "analysis/study/prose.hpp"
 #include "analysis/study/reference_sums.hpp"
 #include "analysis/verdict/drive_verdict.hpp"
+#include "analysis/verdict/innovations.hpp"
 #include "engine/text/number_text.hpp"
 
 #include <algorithm>
@@ -26,6 +27,18 @@ void add(const char* key, const Values& values, std::vector<std::string>& facts)
 /// Returns whether the cell estimates a map and reports it. External programs need not report one.
 bool has_map(const CellAnalysis& cell) {
   return cell.complete > 0 && cell.filter != kDeadReckoning && cell.filter != "external";
+}
+
+/// Says which cells have a map and never compared a detection with it.
+void add_cells_without_innovation(const StudyAnalysis& study, std::vector<std::string>& facts) {
+  std::string cells;
+  for (const CellAnalysis& cell : study.cells) {
+    const std::vector<double> landmarks = cell.scores.column("map_landmarks");
+    const bool is_empty = std::ranges::count(landmarks, 0.0) > 0;
+    if (!has_map(cell) || is_empty || cell.find<Innovations>() != nullptr) continue;
+    cells += (cells.empty() ? "" : ", ") + cell.label;
+  }
+  if (!cells.empty()) add("no innovation", {{"cells", cells}}, facts);
 }
 
 /// Cells that initialised no landmark in the same number of runs share a sentence.
@@ -55,10 +68,22 @@ void add_fixes_in_gaps(const StudyAnalysis& study, std::vector<std::string>& fac
     if (reference.in_gaps == 0) continue;
     add(study.rows_are_scans ? "in gaps of scans" : "in gaps of odometry",
         {{"left", count(reference.in_gaps)},
-         {"all", count(reference.fixes + reference.in_gaps)},
+         {"all", count(reference.all_fixes())},
          {"reference", reference.name},
          {"gap", readable(kLongestGap, 1)}},
         facts);
+  }
+}
+
+void add_fixes_outside(const StudyAnalysis& study, std::vector<std::string>& facts) {
+  for (const JudgedReference& reference : study.references) {
+    Values values = {{"all", count(reference.all_fixes())}, {"reference", reference.name}};
+    if (reference.outside > 0 && reference.outside == reference.all_fixes()) {
+      add("other clock", values, facts);
+    } else if (reference.outside > 0) {
+      values.emplace_back("left", count(reference.outside));
+      add(study.rows_are_scans ? "outside of scans" : "outside of odometry", values, facts);
+    }
   }
 }
 
@@ -117,7 +142,9 @@ std::vector<std::string> drive_facts(const StudyAnalysis& study) {
   if (study.has_truth || study.imported.is_imported()) return facts;
   if (!study.odometry.empty()) add("odometry", {{"way", study.odometry}}, facts);
   add_cells_without_landmark(study, facts);
+  add_cells_without_innovation(study, facts);
   add_fixes_in_gaps(study, facts);
+  add_fixes_outside(study, facts);
   add_headings_of_odometry(study, facts);
   add_facts_of_drives(study, facts);
   return facts;

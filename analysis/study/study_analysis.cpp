@@ -211,6 +211,7 @@ std::vector<JudgedReference> judged_references(const RunCriteria& criteria) {
     reference.has_heading = reference.has_heading || !fixes.headings().empty();
     reference.has_errors = reference.has_errors || fixes.has_errors();
     reference.in_gaps += fixes.in_gaps();
+    reference.outside += fixes.outside();
     reference.has_start = reference.has_start || fixes.has_start();
   };
   for (std::size_t r = 0; r < criteria.references.size(); ++r) {

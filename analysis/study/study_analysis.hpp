@@ -26,6 +26,8 @@ struct JudgedReference {
   bool has_errors = false;  ///< whether its own errors are known, so that there is a NEES
   bool has_start = false;   ///< whether the drive starts at one of its fixes
   std::size_t in_gaps = 0;  ///< number of fixes left out (PathAtFixes::in_gaps()), of all drives
+  std::size_t outside = 0;  ///< number of fixes left out (PathAtFixes::outside()), of all drives
+  std::size_t all_fixes() const { return fixes + in_gaps + outside; }
 
   /// Returns whether cells are compared by raw distances: then the errors of the reference are
   /// known, so it is in the frame of the drive. Else they are compared by aligned distances, since

@@ -57,10 +57,15 @@ def text_of(path):
     """The whole text of a file."""
     try:
         with open(path, encoding="utf-8", errors="replace") as file:
-            return file.read()
+            text = file.read()
     except OSError as error:
         raise ConversionError(f"{path}: cannot be opened ({error.strerror}): check the path and "
                               "its permissions") from None
+    if "\0" in text:
+        line = text.count("\n", 0, text.index("\0")) + 1
+        raise ConversionError(f"{path}:{line}: a NUL byte (this is no text, or it is damaged): "
+                              "take the whole file as it was recorded")
+    return text
 
 
 def numbers_in(path, width, record_is_line=True):

@@ -89,6 +89,14 @@ def start_in(folder):
     return start
 
 
+def check_some(table):
+    """Raises ConversionError if no row is left."""
+    if not len(table.rows.numbers):
+        raise ConversionError(f"{table.rows.path}: no row is between the start and the last "
+                              "odometry (the file would be empty): take the times of all files "
+                              "from one clock")
+
+
 def convert(arguments):
     folder, within = arguments.folder, arguments.sort_within
     conversion.check_new(arguments.output)
@@ -103,6 +111,8 @@ def convert(arguments):
     tables = [odometry,
               repaired_detections(table_in(folder, "detections.csv"), within).repaired(driven),
               *(table_in(folder, name).repaired(once, driven) for name in names)]
+    for table in tables:
+        check_some(table)
     os.makedirs(arguments.output, exist_ok=True)
     for table in [start, *tables]:
         conversion.write_rows(os.path.join(arguments.output, table.name), table.header,

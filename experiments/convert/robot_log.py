@@ -11,6 +11,7 @@ import conversion
 from conversion import ConversionError, np
 
 SORT_WITHIN = 0.1  # [s] rows that are later than this by their time are an error, not sorted
+ROUNDING = 1e-6    # [s] of differences of times since 1970
 FALSE_ALARM = -1   # identity of a detection of no known landmark
 OMNIDIRECTIONAL = "forward_mps,left_mps,yaw_rate_radps"
 
@@ -84,7 +85,7 @@ def in_order(rows, within=SORT_WITHIN):
     error."""
     times = rows.numbers[:, 0]
     late = np.maximum.accumulate(times) - times
-    wrong = np.flatnonzero(late > within)
+    wrong = np.flatnonzero(late > within + ROUNDING)
     if wrong.size:
         k = wrong[0]
         raise ConversionError(

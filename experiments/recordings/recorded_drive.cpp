@@ -141,14 +141,14 @@ std::string references_in_words(const Itinerary& itinerary) {
                             path.heading.empty() ? " without" : " with",
                             path.covariance.empty() ? "without" : "with"));
   }
-  return joined(all, "; ");
+  return all.empty() ? "none" : joined(all, "; ");
 }
 
 void require_alike(const Itinerary& first, const Itinerary& other, std::size_t number) {
   const std::string drive = "drive " + std::to_string(number + 1);
   if (references_in_words(first) != references_in_words(other)) {
     throw StudyError(
-        "{} has the references {} (the first one has {}, and one verdict is by one reference): "
+        "{} has the references: {} (the first one has {}, and one verdict is by one reference): "
         "give all drives files of the same names and columns, or name one by scenario.reference",
         drive, references_in_words(other), references_in_words(first));
   }
@@ -169,6 +169,17 @@ std::vector<Odometry> odometry_rows(const Itinerary& itinerary, const Drive& dri
   }
   odometry.push_back({begin, {}});
   return odometry;
+}
+
+/// The longest time [s] for which a row of odometry moves the vehicle, until the next row.
+double longest_hold(const DriveLog& log) {
+  double longest = 0.0;
+  for (std::size_t i = 1; i < log.odometry.size(); ++i) {
+    const Odometry& held = log.odometry[i - 1];
+    if (held.control.stands(moving_controls(log.controls))) continue;
+    longest = std::max(longest, log.odometry[i].time - std::max(held.time, log.start_time));
+  }
+  return longest;
 }
 
 LoggedScan scan_of(double time, Scan scan, Identities identities) {
@@ -194,6 +205,7 @@ RecordedDrive::RecordedDrive(const DriveLog& log, const LogReach& reach, double 
   itinerary_.start = {log.start.x, log.start.y, wrap(log.start.heading)};
   itinerary_.has_truth = false;
   itinerary_.moving_controls = moving_controls(log.controls);
+  itinerary_.longest_hold = longest_hold(log);
   itinerary_.landmarks = log.landmarks;
   itinerary_.references = log.references;
   for (ReferencePath& path : itinerary_.references) {

@@ -128,10 +128,10 @@ void refuse_impossible_steering(const Settings& s, const DriveLog& log) {
   }
 }
 
-/// Names of controls: "speed, steer".
-std::string names_of(std::span<const Quantity> controls) {
+/// Names of controls or of components of a detection: "speed, steer".
+std::string names_of(std::span<const Quantity> quantities) {
   std::vector<std::string> names;
-  for (const Quantity control : controls) names.emplace_back(component_of(control).name);
+  for (const Quantity quantity : quantities) names.emplace_back(component_of(quantity).name);
   return joined(names);
 }
 
@@ -151,9 +151,9 @@ void refuse_other_detections(const Settings& s, std::span<const Quantity> seen) 
   const std::span<const Quantity> believed = components_of(sensor_of(s, "belief"));
   if (std::ranges::equal(seen, believed)) return;
   throw StudyError(
-      "{}: belief.sensor = {} has other detections than the drive (nothing could be compared): set "
-      "belief.sensor to the sensor of the drive",
-      s.place("belief", "sensor"), s.text("belief", "sensor"));
+      "{}: belief.sensor = {} has other detections than the drive (it measures {}, the drive has "
+      "{}): set belief.sensor to the sensor of the drive",
+      s.place("belief", "sensor"), s.text("belief", "sensor"), names_of(believed), names_of(seen));
 }
 
 /// The log with only the reference that the study names, if it names one.

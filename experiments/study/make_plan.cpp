@@ -164,15 +164,18 @@ std::vector<std::pair<std::string, std::string>> scenario_facts(const Settings& 
   return facts;
 }
 
-/// What the odometry of recorded drives says of their time and way: "1549 s and 3901 m".
+/// What the odometry of recorded drives says of their time and way: "1549 s and 3901 m". Long gaps
+/// are added, since the motion in them is unknown.
 std::string odometry_in_words(const Settings& settings, const DriveSource& drives) {
   const Vehicle vehicle = vehicle_of(settings, "belief");
   const std::uint64_t number = std::max<std::uint64_t>(drives.own_drives(), 1);
-  double seconds = 0.0, metres = 0.0;
+  constexpr double kLongGap = 5.0;  // [s]
+  double seconds = 0.0, metres = 0.0, gap = 0.0;
   Drive drive;
   for (std::uint64_t run = 0; run < number; ++run) {
     const Itinerary& itinerary = drives.itinerary_of(run);
     drives.generate(run, drive);
+    gap = std::max(gap, itinerary.longest_hold);
     for (std::size_t k = 0; k < drive.controls.size(); ++k) {
       const BodyStep<double> step =
           models::body_step(vehicle, drive.controls[k], itinerary.duration(k));
@@ -181,7 +184,8 @@ std::string odometry_in_words(const Settings& settings, const DriveSource& drive
     seconds += drive.controls.empty() ? 0.0 : itinerary.step_time[drive.controls.size() - 1];
   }
   return formatted("{} s and {} m{}", std::llround(seconds), std::llround(metres),
-                   number == 1 ? "" : formatted(" in {} drives", number));
+                   number == 1 ? "" : formatted(" in {} drives", number)) +
+         (gap > kLongGap ? formatted(", with gaps of up to {} s", std::llround(gap)) : "");
 }
 
 /// Throws StudyError if a column is to be stored to which there is an objection.

@@ -412,6 +412,7 @@ TEST(PathAtFixes, UsesOnlyFixesWithinTheDrive) {
   EXPECT_EQ(fixes.headings().size(), 3u);
   EXPECT_EQ(fixes.interpolate(kPathRows).size(), 3u);
   EXPECT_EQ(fixes.in_gaps(), 0U);
+  EXPECT_EQ(fixes.outside(), 2U) << "those at -0.1 and 3.1 s";
 }
 
 // No number counts what is interpolated across a gap, but a fix beside a gap is judged.

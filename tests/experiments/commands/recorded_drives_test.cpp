@@ -190,6 +190,53 @@ TEST_F(Yard, NoNumberCountsWhatLiesInAGapBetweenScans) {
   EXPECT_THAT(text_of("page/index.html"), HasSubstr("55 of 60 fixes of reference"));
 }
 
+TEST_F(Yard, CountsFixesBeforeTheStartAndAfterTheLastPose) {
+  write("yard/detections.csv", scans_each(0.5, 40.0));
+  const StudyAnalysis scans = analysed({"--set", "record.rate=scan"});
+  EXPECT_EQ(scans.references[0].fixes, 40U);
+  EXPECT_EQ(scans.references[0].outside, 20U);
+  EXPECT_THAT(drive_facts(scans), testing::Contains(testing::AllOf(
+                                      HasSubstr("20 of 60 fixes of reference are left out"),
+                                      HasSubstr("record.rate = control"))));
+  EXPECT_THAT(drive_facts(analysed({"--set", "record.rate=control"})),
+              testing::ElementsAre(kOdometry));
+  write("yard/start.csv", "time_s,x_m,y_m,heading_rad\n0.2,0,0,0\n");
+  std::string text = text_of("yard/reference.csv");
+  write("yard/reference.csv", text.insert(text.find('\n') + 1, "0.1,0,0,0,0.1,0.1,0.1\n"));
+  EXPECT_THAT(drive_facts(analysed({"--set", "record.rate=control"})),
+              testing::Contains(HasSubstr("1 of 61 fixes of reference are left out")));
+}
+
+TEST_F(Yard, SaysThatNoFixIsOfTheTimeOfTheDrive) {
+  write("yard/start.csv", "time_s,x_m,y_m,heading_rad\n1e9,0,0,0\n");
+  write("yard/odometry.csv", "time_s,speed_mps,yaw_rate_radps\n1e9,0.3,0.2\n1000000010,0.3,0.2\n");
+  write("yard/detections.csv", "time_s,range_m,bearing_rad,identity\n1000000002,3,0,0\n");
+  EXPECT_THAT(drive_facts(analysed()),
+              testing::Contains(testing::AllOf(HasSubstr("No fix of reference is judged: all 60"),
+                                               HasSubstr("one clock"))));
+}
+
+TEST_F(Yard, SaysHowLongTheOdometryHasGaps) {
+  std::string rows = "time_s,speed_mps,yaw_rate_radps\n0,0.3,0.2\n12,0,0.1\n";
+  write("yard/odometry.csv", rows + "16,0,0\n60,0.3,0.2\n");
+  EXPECT_THAT(drive_facts(analysed())[0], HasSubstr(" m, with gaps of up to 12 s."))
+      << "from 16 s to 60 s the vehicle stands";
+  write("yard/odometry.csv", rows + "16,0,0.1\n60,0.3,0.2\n");
+  EXPECT_THAT(drive_facts(analysed())[0], HasSubstr(" m, with gaps of up to 44 s."));
+}
+
+TEST_F(SurveyedYard, SaysThatNoDetectionWasComparedWithTheMap) {
+  study("cell = ekf_slam\ncell = fastslam2 particles=10\n");
+  const auto compared =
+      HasSubstr("compared with a landmark of the map by ekf_slam, fastslam2_m10: ");
+  EXPECT_THAT(drive_facts(analysed(known())),
+              testing::Not(testing::Contains(HasSubstr("No detection"))));
+  EXPECT_THAT(drive_facts(analysed(known({"--set", "scenario.max_range=1"}))),
+              testing::Contains(compared));
+  write("yard/detections.csv", "time_s,range_m,bearing_rad,identity\n1,5,0,0\n2,5,1,1\n");
+  EXPECT_THAT(drive_facts(analysed()), testing::Contains(compared)) << "each was seen once";
+}
+
 TEST_F(Yard, SaysWhatHappenedBeforeEveryVerdict) {
   study("cell = ekf_slam\ncell = dead_reckoning\n");
   analysed({"--set", "scenario.max_range=1"});
@@ -283,7 +330,8 @@ TEST_F(Yard, EveryFilterWithoutParticlesGivesTheSameInEveryRun) {
   ASSERT_GT(filters, 8U);
   study(cells);
   write("yard/detections.csv", scans_each(0.5, 5.0));
-  analysed({"--set", "study.runs=2", "--threads", "1"});
+  EXPECT_THAT(drive_facts(analysed({"--set", "study.runs=2", "--threads", "1"})),
+              testing::Not(testing::Contains(HasSubstr("No detection"))));
   const ResultFile file(folder_ / "out.h5");
   for (const StoredCell& cell : file.cells()) {
     EXPECT_THAT(file.status(cell), testing::Each(RunStatus::complete)) << cell.label;

@@ -63,6 +63,21 @@ class RepairLog(Scripts):
                       self.converted(repair_log, **self.arguments))
         self.assertEqual(self.bytes_of("new")["start.csv"], START.encode())
 
+    def test_sorts_rows_that_are_late_by_the_limit_itself(self):
+        self.write("odometry.csv", ODOMETRY + "0,1,0\n1.1,1,0\n1.0,1,0\n3,1,0\n")
+        self.assertGreater(1.1 - 1.0, robot_log.SORT_WITHIN, "by rounding")
+        self.assertIn("1 out of order by up to 0.1 s, sorted",
+                      self.converted(repair_log, **self.arguments))
+
+    def test_refuses_a_file_of_which_no_row_is_left(self):
+        self.write("reference_gps.csv", REFERENCE + "1001,0,0,0.1,0.1\n1002,1,0,0.1,0.1\n")
+        self.expect_refused(repair_log, ["reference_gps.csv", "no row", "one clock"],
+                            **self.arguments)
+
+    def test_refuses_a_file_that_is_no_text(self):
+        self.write("detections.csv", DETECTIONS + "1,5,0.1,0\n1,\0,0.1,1\n")
+        self.expect_refused(repair_log, ["detections.csv:3", "NUL byte"], **self.arguments)
+
     def test_refuses_what_it_cannot_repair(self):
         self.write("odometry.csv", ODOMETRY + "0,1,0\n2,1,0\n1,1,0\n")
         self.expect_refused(repair_log, ["odometry.csv:4", "too late", "--sort-within"],
