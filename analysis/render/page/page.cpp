@@ -204,6 +204,8 @@ std::string title_line(const StudyAnalysis& study) {
          " &middot; seed " + std::to_string(study.seed) + " &middot; " + html_escape(study.file);
 }
 
+constexpr const char* kCellIs = " (a cell is a filter in one setting)";
+
 }  // namespace
 
 void write_page(const StudyAnalysis& study, const std::vector<Section>& sections,
@@ -247,7 +249,7 @@ std::string studied_sentence(const StudyAnalysis& study) {
            (study.cells.size() == 1 ? "" : " in each of " + n + " cells") + judged;
   }
   const std::string cells = (study.cells.size() == 1 ? "One cell" : "Each of " + n + " cells") +
-                            " (a cell is a filter in one setting) estimates ";
+                            std::string(kCellIs) + " estimates ";
   if (study.has_truth) {
     return cells + "the same " + runs + " simulated drives of " + time + " among " +
            std::to_string(study.beacons) + " landmarks" + judged;
@@ -256,8 +258,28 @@ std::string studied_sentence(const StudyAnalysis& study) {
   return cells + "one recorded drive of " + time + ", " + runs + " times.";
 }
 
-/// Which cells have which answer: "Optimistic: ekf_slam, ukf_slam (NEES ratio 1.2 to 1.9)." Empty
-/// for innovations, which have more than one answer, and for bounds, which are no estimates.
+/// "2 are consistent within 1.1: smoother, dead_reckoning (NEES ratio 0.99 to 1.01)".
+std::string answered_in_words(const std::vector<const CellAnalysis*>& cells,
+                              const StudyAnalysis& study) {
+  std::string labels;
+  std::vector<double> ratios;
+  for (const CellAnalysis* cell : cells) {
+    labels += (labels.empty() ? "" : ", ") + cell->label;
+    ratios.push_back(cell->verdict.ratio_estimate());
+  }
+  const Verdict& verdict = cells.front()->verdict;
+  const std::string within =
+      verdict.answer == Answer::consistent ? " within " + engine::exact_text(verdict.within) : "";
+  const auto [least, most] = std::ranges::minmax(ratios);
+  const bool are_all = cells.size() > 1 && cells.size() == study.cells.size();
+  const std::string n = are_all ? "all" : std::to_string(cells.size());
+  return n + (cells.size() == 1 ? " is " : " are ") + answer_in_words(verdict) + within + ": " +
+         labels + " (" + study.imported.name_of_ratio() + " " + compact(least) +
+         (cells.size() == 1 ? "" : " to " + compact(most)) + ")";
+}
+
+/// How many cells have which answer, and which they are. Empty for innovations, which have more
+/// than one answer, and for bounds, which are no estimates.
 std::string found_sentences(const StudyAnalysis& study) {
   const auto has_bound = [](const CellAnalysis& cell) { return has_bounds(cell.settings); };
   if (!study.has_truth || study.imported.are_innovations() ||
@@ -268,27 +290,32 @@ std::string found_sentences(const StudyAnalysis& study) {
     if (cell.verdict.answer == Answer::untested) continue;
     found[{cell.verdict.answer, answer_in_words(cell.verdict)}].push_back(&cell);
   }
+  if (found.empty()) return "";
   std::string text;
   for (const auto& [answer, cells] : found) {
-    std::string name = answer.second, labels;
-    std::vector<double> ratios;
-    for (const CellAnalysis* cell : cells) {
-      labels += (labels.empty() ? "" : ", ") + cell->label;
-      ratios.push_back(cell->verdict.ratio_estimate());
-    }
-    const auto [least, most] = std::ranges::minmax(ratios);
-    name.front() = static_cast<char>(std::toupper(name.front()));
-    text += " " + name + ": " + labels + " (" + study.imported.name_of_ratio() + " " +
-            compact(least) + (ratios.size() == 1 ? "" : " to " + compact(most)) + ").";
+    text += (text.empty() ? "" : "; ") + answered_in_words(cells, study);
   }
-  return text;
+  const std::string n = std::to_string(study.cells.size());
+  return "Of " + n + (n == "1" ? " cell" : " cells") + kCellIs + ", " + text + ". Where the " +
+         study.imported.name_of_ratio() +
+         " is 1, squared errors are as large as the filter claims.";
+}
+
+/// What a page begins with: what was found, if it can be said in words, and what was studied.
+std::string first_paragraph(const StudyAnalysis& study) {
+  const std::string found = found_sentences(study);
+  std::string studied = studied_sentence(study);
+  if (found.empty()) return studied;
+  const std::size_t at = studied.find(kCellIs);  // is said once
+  if (at != studied.npos) studied.erase(at, std::string_view(kCellIs).size());
+  return found + " " + studied;
 }
 
 std::string markdown_page(const StudyAnalysis& study, const std::vector<Section>& sections,
                           const TextPairs& provenance) {
   std::string page = "# " + markdown_escape(study.title.empty() ? study.study_name : study.title) +
-                     "\n\n" + markdown_escape(studied_sentence(study) + found_sentences(study)) +
-                     "\n" + markdown_leading_figure(sections);
+                     "\n\n" + markdown_escape(first_paragraph(study)) + "\n" +
+                     markdown_leading_figure(sections);
   for (const std::string& fact : drive_facts(study)) page += "\n" + markdown_escape(fact) + "\n";
   for (const Section& section : sections) {
     if (section.is_for_terminal) page += markdown_section(section);
