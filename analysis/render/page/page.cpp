@@ -5,13 +5,14 @@
 #include "analysis/render/tables/files.hpp"
 #include "analysis/study/drive_facts.hpp"
 #include "analysis/study/frame.hpp"
+#include "analysis/study/reference_sums.hpp"
 #include "analysis/study/verdict_table.hpp"
 #include "engine/errors.hpp"
 #include "engine/text/number_text.hpp"
 #include "engine/text/wrapped_text.hpp"
 
 #include <algorithm>
-#include <cctype>
+#include <cmath>
 #include <fstream>
 #include <iterator>
 #include <map>
@@ -255,7 +256,8 @@ std::string studied_sentence(const StudyAnalysis& study) {
            std::to_string(study.beacons) + " landmarks" + judged;
   }
   if (study.own_drives > 0) return cells + runs + " recorded drives of up to " + time + ".";
-  return cells + "one recorded drive of " + time + ", " + runs + " times.";
+  return cells + "one recorded drive of " + time +
+         (runs == "1" ? " once." : ", " + runs + " times.");
 }
 
 /// "2 are consistent within 1.1: smoother, dead_reckoning (NEES ratio 0.99 to 1.01)".
@@ -278,13 +280,15 @@ std::string answered_in_words(const std::vector<const CellAnalysis*>& cells,
          (cells.size() == 1 ? "" : " to " + compact(most)) + ")";
 }
 
-/// How many cells have which answer, and which they are. Empty for innovations, which have more
-/// than one answer, and for bounds, which are no estimates.
-std::string found_sentences(const StudyAnalysis& study) {
+std::string of_cells(const StudyAnalysis& study) {
+  const std::string n = std::to_string(study.cells.size());
+  return "Of " + n + (n == "1" ? " cell" : " cells") + kCellIs + ", ";
+}
+
+/// How many cells have which answer, and which they are; empty for bounds, which are no estimates.
+std::string answers_found(const StudyAnalysis& study) {
   const auto has_bound = [](const CellAnalysis& cell) { return has_bounds(cell.settings); };
-  if (!study.has_truth || study.imported.are_innovations() ||
-      std::ranges::any_of(study.cells, has_bound))
-    return "";
+  if (std::ranges::any_of(study.cells, has_bound)) return "";
   std::map<std::pair<Answer, std::string>, std::vector<const CellAnalysis*>> found;
   for (const CellAnalysis& cell : study.cells) {
     if (cell.verdict.answer == Answer::untested) continue;
@@ -295,13 +299,38 @@ std::string found_sentences(const StudyAnalysis& study) {
   for (const auto& [answer, cells] : found) {
     text += (text.empty() ? "" : "; ") + answered_in_words(cells, study);
   }
-  const std::string n = std::to_string(study.cells.size());
-  return "Of " + n + (n == "1" ? " cell" : " cells") + kCellIs + ", " + text + ". Where the " +
-         study.imported.name_of_ratio() +
+  return of_cells(study) + text + ". Where the " + study.imported.name_of_ratio() +
          " is 1, squared errors are as large as the filter claims.";
 }
 
-/// What a page begins with: what was found, if it can be said in words, and what was studied.
+/// Which cells are nearest to the leading reference of a recorded drive and farthest from it, in
+/// the mean over runs; empty if fewer than two can be compared.
+std::string distances_found(const StudyAnalysis& study) {
+  if (study.references.empty() || study.own_drives > 0) return "";
+  const JudgedReference& reference = study.references.front();
+  const auto score =
+      reference.compares_raw() ? &ReferenceScores::rms : &ReferenceScores::aligned_rms;
+  std::map<double, std::string> found;
+  for (const CellAnalysis& cell : study.cells) {
+    const double mean = cell.get<ReferenceAnalyses>().front().over_runs(score).summary.mean;
+    if (std::isfinite(mean)) found.emplace(mean, cell.label);
+  }
+  if (found.size() < 2) return "";
+  const auto& [least, nearest] = *found.begin();
+  const auto& [most, farthest] = *found.rbegin();
+  return of_cells(study) + nearest + " is the nearest to the reference " + reference.name +
+         ", with an RMS distance of " + compact(least) + " m in the mean over runs" +
+         (reference.compares_raw() ? "" : " after the best rigid alignment of each") + ", and " +
+         farthest + " is the farthest, with " + compact(most) + " m.";
+}
+
+/// What was found, as far as it can be said in a sentence; innovations have more than one answer.
+std::string found_sentences(const StudyAnalysis& study) {
+  if (study.imported.are_innovations()) return "";
+  return study.has_truth ? answers_found(study) : distances_found(study);
+}
+
+/// What a page begins with: what was found and what was studied.
 std::string first_paragraph(const StudyAnalysis& study) {
   const std::string found = found_sentences(study);
   std::string studied = studied_sentence(study);
