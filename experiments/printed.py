@@ -435,6 +435,17 @@ def counted(number, noun):
     return f"{number} {noun}" + ("" if number == 1 else "s")
 
 
+def metric_in_words(metric):
+    """A metric in a sentence, before "of CELL": "position RMSE", "CPU time"."""
+    words = metric.replace("_", " ").replace("-", " minus ")
+    for name, meaning in ((r"stays above from (\w+)", r"time to lasting inconsistency of the \1"),
+                          (r"nees (position|heading|pose)", r"NEES of the \1"),
+                          ("cpu seconds", "CPU time"),
+                          ("reference rms", "RMS distance from the reference")):
+        words = re.sub(rf"\b{name}\b", meaning, words)
+    return re.sub(r"\b(rmse|rms|nees|nis|ess)\b", lambda word: word[0].upper(), words)
+
+
 def claim_in_words(claim):
     relation = {"<": "is less than", ">": "is greater than",
                 "~": "differs by less than 10 % from"}[claim["relation"]]
@@ -443,8 +454,7 @@ def claim_in_words(claim):
         times = "" if claim["factor"] == 1.0 else f"{claim['factor']:g} times "
         right = f"{times}that of {claim['right']}"
     where = f" ({claim['note']})" if claim["note"] else ""
-    metric = claim["metric"].replace("_", " ").replace("-", " minus ")
-    return f"the {metric} of {claim['left']} {relation} {right}{where}"
+    return f"the {metric_in_words(claim['metric'])} of {claim['left']} {relation} {right}{where}"
 
 
 def tally(judgements, *beginnings):
@@ -460,28 +470,31 @@ def said_by_paper(source, values, claims):
     if len(claims) > 1:
         more.insert(0, f"makes {counted(len(claims) - 1, 'more claim')} of this kind")
     return (f"{source}, says that {claim_in_words(claims[0][0])}"
-            + "".join(f", and {each}" for each in more) + ".")
+            + ", ".join(["", *more[:-1], *(f"and {each}" for each in more[-1:])]) + ".")
 
 
 def answer_in_words(judgement):
-    """The verdict on one claim, with the difference that was measured."""
+    """The verdict on the first claim, with the difference that was measured."""
     _, (difference, interval, verdict) = judgement
     measured = number_text(difference) + ("" if interval is None else f" {interval_text(interval)}")
-    answer = {"holds": "it holds", "contradicted": "it is contradicted",
-              "undecided": "it is undecided"}.get(re.split("[ ,:]", verdict)[0],
-                                                  "it could not be measured")
-    return f"left minus right is {measured}, so {answer}"
+    answer = {"holds": "holds", "contradicted": "is contradicted",
+              "undecided": "is undecided"}.get(re.split("[ ,:]", verdict)[0],
+                                               "could not be measured")
+    return f"the first claim {answer} (the left side minus the right side is {measured})"
 
 
 def found_by_us(values, claims):
-    found = [f"of the first claim {answer_in_words(claims[0])}"] if claims else []
+    found = [answer_in_words(claims[0])] if claims else []
     if len(claims) > 1:
-        found.append(f"of all {len(claims)} claims, those that hold are {tally(claims, 'holds')}, "
-                     f"contradicted {tally(claims, 'contradicted')}, "
-                     f"undecided {tally(claims, 'undecided')}")
+        counts = [tally(claims, verdict) for verdict in ("holds", "contradicted", "undecided")]
+        verbs = ["holds" if counts[0] == 1 else "hold",
+                 *("is" if count == 1 else "are" for count in counts[1:])]
+        found.append(f"of all {len(claims)} claims, {counts[0]} {verbs[0]}, "
+                     f"{counts[1]} {verbs[1]} contradicted and {counts[2]} {verbs[2]} undecided")
     if values:
-        found.append(f"of {counted(len(values), 'printed number')} ours agree with "
-                     f"{tally(values, 'agrees')}")
+        agreeing = tally(values, "agrees")
+        found.append(f"of {counted(len(values), 'printed number')}, "
+                     f"{agreeing} agree{'s' if agreeing == 1 else ''} with ours")
     return "We find: " + "; ".join(found) + "."
 
 
@@ -494,7 +507,7 @@ def how_sure(printed, measured, values):
                 f"by run, and intervals are at {LEVEL * 100:.0f} %")
     for value, (mean, _, verdict) in values:
         if value["cell"] == printed["baseline"] and verdict.startswith("not reproduced"):
-            return (sentence + f"; but the {value['metric'].replace('_', ' ')} of {value['cell']} "
+            return (sentence + f"; but the {metric_in_words(value['metric'])} of {value['cell']} "
                     f"itself is {verdict.partition(': ')[2]}, so the paper's world must have been "
                     "another, and only orders of filters can be compared.")
     return sentence + "."

@@ -190,12 +190,11 @@ class Printed(unittest.TestCase):
                 "value = cell=a metric=position_rmse printed=2\n"
                 "value = cell=b metric=position_rmse printed=99\n")
         self.assertEqual(self.lead(text, measured), " ".join((
-            "A paper, 2016; Table 1, says that the position rmse of a is less than that of b "
-            "(Fig. 3), and makes 1 more claim of this kind, and prints 2 numbers that can be "
-            "compared.",
-            "We find: of the first claim left minus right is -1.25 \\[-1.3, -1.2\\], so it holds; "
-            "of all 2 claims, those that hold are 1, contradicted 1, undecided 0; of 2 printed "
-            "numbers ours agree with 1.",
+            "A paper, 2016; Table 1, says that the position RMSE of a is less than that of b "
+            "(Fig. 3), makes 1 more claim of this kind, and prints 2 numbers that can be compared.",
+            "We find: the first claim holds (the left side minus the right side is -1.25 \\[-1.3, "
+            "-1.2\\]); of all 2 claims, 1 holds, 1 is contradicted and 0 are undecided; of 2 "
+            "printed numbers, 1 agrees with ours.",
             "How sure: each cell has 100 complete runs (the paper has 20), cells are compared run "
             "by run, and intervals are at 95 %.")))
 
@@ -206,7 +205,7 @@ class Printed(unittest.TestCase):
         self.assertIn("A paper, prints 1 number that can be compared.", lead)
         self.assertIn("each cell has 5 to 20 complete runs (the paper does not say of how many its",
                       lead)
-        self.assertIn("but the position rmse of a itself is 4 times smaller, so", lead)
+        self.assertIn("but the position RMSE of a itself is 4 times smaller, so", lead)
 
     def test_the_sentences_are_written_to_a_file(self):
         self.measured({"a": [1.0, 2.0], "b": [2.0, 4.0]})
@@ -216,7 +215,7 @@ class Printed(unittest.TestCase):
         to = os.path.join(self.folder, "lead.md")
         subprocess.run(call + [to], stdout=subprocess.PIPE, check=True)
         with open(to, encoding="utf-8") as file:
-            self.assertTrue(file.read().startswith("A paper, says that the position rmse of a"))
+            self.assertTrue(file.read().startswith("A paper, says that the position RMSE of a"))
         failed = subprocess.run(call + [os.path.join(to, "no")], stdout=subprocess.PIPE,
                                 stderr=subprocess.PIPE, text=True, check=False)
         self.assertEqual(failed.returncode, 2)

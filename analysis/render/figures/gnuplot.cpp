@@ -177,7 +177,7 @@ std::string mark_style(const ChartMarks& marks) {
     case Shape::line:
       if (marks.style == kReferenceStyle) return curve_style(marks.style);
       return "lines linewidth " + exact_text(marks.thickness > 0.0 ? marks.thickness : 1.4) +
-             colour_of(marks.style);
+             colour_of(marks.style) + " dashtype " + std::to_string(line_dashes(marks.style));
     case Shape::points:
       return points("7", marks.thickness > 0.0 ? 0.1 * marks.thickness : 0.5);
     case Shape::crosses:
@@ -291,9 +291,9 @@ std::string named_ticks(const std::vector<std::string>& names, bool shown = true
 /// Commands for the horizontal axis of a panel. If all columns have one label, common_label() puts
 /// it below the drawing.
 std::string horizontal_axis(const Chart& chart, const PanelBox& box) {
-  const std::string label = box.is_alone_in_row
-                                ? "set xlabel " + gnuplot_quoted(chart.x_label) + " offset 0,0.4\n"
-                                : "unset xlabel\n";
+  const std::string label = box.is_alone_in_row ? "set xlabel " + gnuplot_quoted(chart.x_label) +
+                                                      " noenhanced offset 0,0.4\n"
+                                                : "unset xlabel\n";
   return std::string(chart.x_logarithmic ? "set" : "unset") + " logscale x\nset xtics nomirror " +
          (chart.x_names.empty() ? "autofreq" : named_ticks(chart.x_names, box.is_lowest)) + "\n" +
          range("x", box.x_from, box.x_to) +
@@ -302,7 +302,7 @@ std::string horizontal_axis(const Chart& chart, const PanelBox& box) {
 
 std::string common_label(const Chart& chart, const PrintLayout& layout) {
   if (layout.boxes.front().is_alone_in_row) return "";
-  return "set label " + gnuplot_quoted(chart.x_label) + " at screen 0.5, screen " +
+  return "set label " + gnuplot_quoted(chart.x_label) + " noenhanced at screen 0.5, screen " +
          readable(10.0 / layout.height, 4) + " center\n";
 }
 

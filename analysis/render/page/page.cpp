@@ -5,13 +5,14 @@
 #include "analysis/render/tables/files.hpp"
 #include "analysis/study/drive_facts.hpp"
 #include "analysis/study/frame.hpp"
+#include "analysis/study/reference_sums.hpp"
 #include "analysis/study/verdict_table.hpp"
 #include "engine/errors.hpp"
 #include "engine/text/number_text.hpp"
 #include "engine/text/wrapped_text.hpp"
 
 #include <algorithm>
-#include <cctype>
+#include <cmath>
 #include <fstream>
 #include <iterator>
 #include <map>
@@ -204,6 +205,8 @@ std::string title_line(const StudyAnalysis& study) {
          " &middot; seed " + std::to_string(study.seed) + " &middot; " + html_escape(study.file);
 }
 
+constexpr const char* kCellIs = " (a cell is a filter in one setting)";
+
 }  // namespace
 
 void write_page(const StudyAnalysis& study, const std::vector<Section>& sections,
@@ -247,48 +250,101 @@ std::string studied_sentence(const StudyAnalysis& study) {
            (study.cells.size() == 1 ? "" : " in each of " + n + " cells") + judged;
   }
   const std::string cells = (study.cells.size() == 1 ? "One cell" : "Each of " + n + " cells") +
-                            " (a cell is a filter in one setting) estimates ";
+                            std::string(kCellIs) + " estimates ";
   if (study.has_truth) {
     return cells + "the same " + runs + " simulated drives of " + time + " among " +
            std::to_string(study.beacons) + " landmarks" + judged;
   }
   if (study.own_drives > 0) return cells + runs + " recorded drives of up to " + time + ".";
-  return cells + "one recorded drive of " + time + ", " + runs + " times.";
+  return cells + "one recorded drive of " + time +
+         (runs == "1" ? " once." : ", " + runs + " times.");
 }
 
-/// Which cells have which answer: "Optimistic: ekf_slam, ukf_slam (NEES ratio 1.2 to 1.9)." Empty
-/// for innovations, which have more than one answer, and for bounds, which are no estimates.
-std::string found_sentences(const StudyAnalysis& study) {
+/// "2 are consistent within 1.1: smoother, dead_reckoning (NEES ratio 0.99 to 1.01)".
+std::string answered_in_words(const std::vector<const CellAnalysis*>& cells,
+                              const StudyAnalysis& study) {
+  std::string labels;
+  std::vector<double> ratios;
+  for (const CellAnalysis* cell : cells) {
+    labels += (labels.empty() ? "" : ", ") + cell->label;
+    ratios.push_back(cell->verdict.ratio_estimate());
+  }
+  const Verdict& verdict = cells.front()->verdict;
+  const std::string within =
+      verdict.answer == Answer::consistent ? " within " + engine::exact_text(verdict.within) : "";
+  const auto [least, most] = std::ranges::minmax(ratios);
+  const bool are_all = cells.size() > 1 && cells.size() == study.cells.size();
+  const std::string n = are_all ? "all" : std::to_string(cells.size());
+  return n + (cells.size() == 1 ? " is " : " are ") + answer_in_words(verdict) + within + ": " +
+         labels + " (" + study.imported.name_of_ratio() + " " + compact(least) +
+         (cells.size() == 1 ? "" : " to " + compact(most)) + ")";
+}
+
+std::string of_cells(const StudyAnalysis& study) {
+  const std::string n = std::to_string(study.cells.size());
+  return "Of " + n + (n == "1" ? " cell" : " cells") + kCellIs + ", ";
+}
+
+/// How many cells have which answer, and which they are; empty for bounds, which are no estimates.
+std::string answers_found(const StudyAnalysis& study) {
   const auto has_bound = [](const CellAnalysis& cell) { return has_bounds(cell.settings); };
-  if (!study.has_truth || study.imported.are_innovations() ||
-      std::ranges::any_of(study.cells, has_bound))
-    return "";
+  if (std::ranges::any_of(study.cells, has_bound)) return "";
   std::map<std::pair<Answer, std::string>, std::vector<const CellAnalysis*>> found;
   for (const CellAnalysis& cell : study.cells) {
     if (cell.verdict.answer == Answer::untested) continue;
     found[{cell.verdict.answer, answer_in_words(cell.verdict)}].push_back(&cell);
   }
+  if (found.empty()) return "";
   std::string text;
   for (const auto& [answer, cells] : found) {
-    std::string name = answer.second, labels;
-    std::vector<double> ratios;
-    for (const CellAnalysis* cell : cells) {
-      labels += (labels.empty() ? "" : ", ") + cell->label;
-      ratios.push_back(cell->verdict.ratio_estimate());
-    }
-    const auto [least, most] = std::ranges::minmax(ratios);
-    name.front() = static_cast<char>(std::toupper(name.front()));
-    text += " " + name + ": " + labels + " (" + study.imported.name_of_ratio() + " " +
-            compact(least) + (ratios.size() == 1 ? "" : " to " + compact(most)) + ").";
+    text += (text.empty() ? "" : "; ") + answered_in_words(cells, study);
   }
-  return text;
+  return of_cells(study) + text + ". Where the " + study.imported.name_of_ratio() +
+         " is 1, squared errors are as large as the filter claims.";
+}
+
+/// Which cells are nearest to the leading reference of a recorded drive and farthest from it, in
+/// the mean over runs; empty if fewer than two can be compared.
+std::string distances_found(const StudyAnalysis& study) {
+  if (study.references.empty() || study.own_drives > 0) return "";
+  const JudgedReference& reference = study.references.front();
+  const auto score =
+      reference.compares_raw() ? &ReferenceScores::rms : &ReferenceScores::aligned_rms;
+  std::map<double, std::string> found;
+  for (const CellAnalysis& cell : study.cells) {
+    const double mean = cell.get<ReferenceAnalyses>().front().over_runs(score).summary.mean;
+    if (std::isfinite(mean)) found.emplace(mean, cell.label);
+  }
+  if (found.size() < 2) return "";
+  const auto& [least, nearest] = *found.begin();
+  const auto& [most, farthest] = *found.rbegin();
+  return of_cells(study) + nearest + " is the nearest to the reference " + reference.name +
+         ", with an RMS distance of " + compact(least) + " m in the mean over runs" +
+         (reference.compares_raw() ? "" : " after the best rigid alignment of each") + ", and " +
+         farthest + " is the farthest, with " + compact(most) + " m.";
+}
+
+/// What was found, as far as it can be said in a sentence; innovations have more than one answer.
+std::string found_sentences(const StudyAnalysis& study) {
+  if (study.imported.are_innovations()) return "";
+  return study.has_truth ? answers_found(study) : distances_found(study);
+}
+
+/// What a page begins with: what was found and what was studied.
+std::string first_paragraph(const StudyAnalysis& study) {
+  const std::string found = found_sentences(study);
+  std::string studied = studied_sentence(study);
+  if (found.empty()) return studied;
+  const std::size_t at = studied.find(kCellIs);  // is said once
+  if (at != studied.npos) studied.erase(at, std::string_view(kCellIs).size());
+  return found + " " + studied;
 }
 
 std::string markdown_page(const StudyAnalysis& study, const std::vector<Section>& sections,
                           const TextPairs& provenance) {
   std::string page = "# " + markdown_escape(study.title.empty() ? study.study_name : study.title) +
-                     "\n\n" + markdown_escape(studied_sentence(study) + found_sentences(study)) +
-                     "\n" + markdown_leading_figure(sections);
+                     "\n\n" + markdown_escape(first_paragraph(study)) + "\n" +
+                     markdown_leading_figure(sections);
   for (const std::string& fact : drive_facts(study)) page += "\n" + markdown_escape(fact) + "\n";
   for (const Section& section : sections) {
     if (section.is_for_terminal) page += markdown_section(section);

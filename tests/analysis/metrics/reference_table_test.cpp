@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/render/page/page.hpp"
 #include "analysis/render/tables/analysis_file.hpp"
 #include "analysis/render/tables/files.hpp"
 #include "analysis/run/reference_scores.hpp"
@@ -78,6 +79,17 @@ StudyAnalysis shifted_study(bool has_errors) {
 TEST(ReferenceTable, ComparesAsItStandsWhereTheErrorsOfTheReferenceAreKnown) {
   EXPECT_EQ(baseline_table(shifted_study(true)).rows[1][3], "better in every run");
   EXPECT_EQ(baseline_table(shifted_study(false)).rows[1][3], "better in no run");
+}
+
+TEST(ReferencePage, BeginsWithTheNearestCellByTheDistanceThatIsCompared) {
+  StudyAnalysis study = shifted_study(true);
+  study.has_truth = false;
+  EXPECT_THAT(
+      markdown_page(study, {}, {}),
+      HasSubstr("\n\nOf 2 cells (a cell is a filter in one setting), smoother is the nearest "
+                "to the reference gps, with an RMS distance of 0.670 m"));
+  study.references.front().has_errors = false;
+  EXPECT_THAT(markdown_page(study, {}, {}), HasSubstr("ekf\\_slam is the nearest to"));
 }
 
 TEST(BaselineTable, PrintsEqualResultsAsTies) {

@@ -46,10 +46,11 @@ TEST(Report, HoldsEverySectionAndNeedsNothingElse) {
     EXPECT_THAT(summary, HasSubstr(part));
   }
   EXPECT_THAT(summary, Not(HasSubstr("](figures/rmse.svg)")));
-  const std::size_t studied = summary.find("\n\nEach of 2 cells"),
-                    found = summary.find("Optimistic: ");
-  EXPECT_LT(studied, found);
-  EXPECT_LT(found, summary.find("](figures/anees.svg)")) << "what was found comes before a figure";
+  const std::size_t found = summary.find("\n\nOf 2 cells (a cell is a filter in one setting), "),
+                    studied = summary.find(" Each of 2 cells estimates ");
+  EXPECT_LT(found, summary.find(" optimistic: "));
+  EXPECT_LT(summary.find(" optimistic: "), studied) << "what was found comes first";
+  EXPECT_LT(studied, summary.find("](figures/anees.svg)")) << "words come before a figure";
   EXPECT_LT(summary.find("](figures/anees.svg)"), summary.find("\n|")) << "the figure comes first";
   EXPECT_GT(summary.find("\n- study `"), summary.rfind("\n|")) << "the origin comes last";
 }

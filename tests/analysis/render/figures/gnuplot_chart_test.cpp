@@ -69,6 +69,22 @@ TEST(GnuplotChart, InterruptsALineWhereAPlaceIsMissing) {
   EXPECT_THAT(gnuplot_chart(chart, 900).numbers, HasSubstr("\n0.5,1\n\n1.5,2\n"));
 }
 
+TEST(GnuplotChart, DashesLinesBeyondTheColours) {
+  Chart chart{"x [m]", 0.0, 2.0, {}};
+  chart.panels = {{"panel", {false, 0.0, 3.0}, {}, {}, {}}};
+  chart.panels[0].marks = {marks_of(ChartMarks::Shape::line)};
+  chart.panels[0].marks[0].style = 0;
+  EXPECT_THAT(gnuplot_chart(chart, 900).commands, HasSubstr("'#0072B2' dashtype 1"));
+  chart.panels[0].marks[0].style = 6;
+  EXPECT_THAT(gnuplot_chart(chart, 900).commands, HasSubstr("'#0072B2' dashtype 2"));
+}
+
+TEST(GnuplotChart, ShowsAnUnderscoreOfALabelAsItIs) {
+  Chart chart = two_panels();
+  chart.x_label = "motion_noise";
+  EXPECT_THAT(gnuplot_chart(chart, 900).commands, HasSubstr("'motion_noise' noenhanced"));
+}
+
 TEST(GnuplotChart, HasAnAxisWhereNothingIsANumber) {
   Chart chart = two_panels();
   chart.panels[1].curves = {{"two", 1, {kNothing, kNothing}}};
