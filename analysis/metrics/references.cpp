@@ -151,7 +151,7 @@ std::string drives_in_words(const StudyAnalysis& study, const JudgedReference& r
 std::string fixes_text(const StudyAnalysis& study) {
   std::string text;
   for (const JudgedReference& reference : study.references) {
-    text += (text.empty() ? "" : ", ") + reference.name + " has " +
+    text += (text.empty() ? "" : "; ") + reference.name + " has " +
             std::to_string(reference.fixes) + " fixes within " + drives_in_words(study, reference);
     if (reference.in_gaps > 0) text += ", " + std::to_string(reference.in_gaps) + " in gaps";
     if (reference.outside > 0)

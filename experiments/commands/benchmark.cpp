@@ -2,8 +2,6 @@
 #include "engine/core/unusable_filter.hpp"
 #include "engine/errors.hpp"
 #include "engine/formatted.hpp"
-#include "engine/records/check_file.hpp"
-#include "engine/records/fingerprint.hpp"
 #include "engine/records/posix_file.hpp"
 #include "engine/records/result_file.hpp"
 #include "engine/runs/monte_carlo.hpp"
@@ -14,9 +12,10 @@
 #include "experiments/benchmark/matrix.hpp"
 #include "experiments/benchmark/matrix_figure.hpp"
 #include "experiments/commands/arguments.hpp"
+#include "experiments/commands/benchmark_task.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/shared_work.hpp"
-#include "experiments/commands/stored_result.hpp"
+#include "experiments/commands/stale_results.hpp"
 #include "experiments/commands/summed_study.hpp"
 #include "experiments/text/words.hpp"
 
@@ -35,28 +34,6 @@ namespace montecarta::experiments {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// One filter in one world, with the file that says that it is done.
-struct BenchmarkTask {
-  BenchmarkFilter filter;
-  std::string world;
-  fs::path entry;
-
-  fs::path result() const { return fs::path(entry).replace_extension(".h5"); }
-  std::string name() const { return formatted("{} in {}", filter.label, world); }
-};
-
-/// What one process does in a folder, perhaps beside others.
-struct BenchmarkWorker {
-  SharedWork work;
-  fs::path folder;
-
-  const Arguments& arguments() const { return work.arguments(); }
-  std::optional<std::uint64_t> runs() const { return arguments().count("runs", 3, 1'000'000); }
-  Study study(const BenchmarkTask& task) const {
-    return benchmark_study(task.world, task.filter.cell, runs());
-  }
-};
 
 std::vector<std::string> worlds_of(const Arguments& arguments) {
   std::vector<std::string> all = benchmark_worlds();
@@ -100,133 +77,6 @@ std::vector<BenchmarkTask> tasks_of(const BenchmarkWorker& worker) {
     if (tasks.size() == before) benchmark_study(worlds.front(), filter.cell);  // throws the reason
   }
   return tasks;
-}
-
-/// The files of the program that is the filter of a study, with their SHA-256.
-TextPairs program_files_of(const Study& study) {
-  const CellSpec& cell = study.cells.front();
-  if (!starts_program(*cell.filter)) return {};
-  const auto command =
-      std::ranges::find(cell.options, "command", [](const auto& option) { return option.first; });
-  return files_of_command(command->second);
-}
-
-/// A stored file of the program that is another one now; "" if there is none. A file that has
-/// appeared since, such as a log that the program writes, does not count. Throws StudyError if a
-/// stored one is gone.
-std::string changed_file(const TextPairs& before, const TextPairs& now, const BenchmarkTask& task) {
-  std::string changed;
-  for (const auto& [name, sha] : before) {
-    const auto found = std::ranges::find(now, name, &TextPairs::value_type::first);
-    if (found == now.end()) {
-      throw StudyError(
-          "{}: no such file (it was a part of the program of {}, and paths are relative to the "
-          "current folder): call montecarta in the folder where it was called before, or give the "
-          "filter another label",
-          name, task.name());
-    }
-    if (changed.empty() && found->second != sha) changed = name;
-  }
-  return changed;
-}
-
-/// Throws the StudyError of `holder`, which has a result or work of another study than the task.
-[[noreturn]] void refuse_other_study(const BenchmarkWorker& worker, const BenchmarkTask& task,
-                                     const fs::path& holder, const std::string& study_sha256,
-                                     std::uint64_t runs) {
-  const Study with_its_runs = benchmark_study(task.world, task.filter.cell, runs);
-  const fs::path all = fs::path(task.entry).replace_extension(".*");
-  if (sha256(resolved_text(with_its_runs)) == study_sha256) {
-    throw StudyError(
-        "{}: is of {} runs, and {} are asked for (runs cannot be added to stored sums): give "
-        "--runs {}, choose another folder, or remove {}",
-        holder, runs, worker.study(task).settings.count("study", "runs"), runs, all);
-  }
-  throw StudyError(
-      "{}: is of another filter, which had this label: choose another label or folder, or remove "
-      "{}",
-      holder, all);
-}
-
-/// The entry of a task; nullopt if there is none. Throws StudyError if it is of another study.
-std::optional<ArchiveEntry> stored_entry(const BenchmarkWorker& worker, const BenchmarkTask& task) {
-  if (!is_there(task.entry)) return std::nullopt;
-  std::optional<ArchiveEntry> entry;
-  try {
-    entry = read_entry(task.entry);
-  } catch (const StudyError&) {
-    if (is_there(task.entry)) throw;
-    return std::nullopt;  // another worker has removed it meanwhile
-  }
-  if (entry->study_sha256 != sha256(resolved_text(worker.study(task))))
-    refuse_other_study(worker, task, task.entry, entry->study_sha256, entry->runs);
-  return entry;
-}
-
-/// The file of its program that has changed since a result was computed; "" if there is none.
-std::string changed_since(const ArchiveEntry& entry, const BenchmarkWorker& worker,
-                          const BenchmarkTask& task) {
-  return changed_file(entry.program_files, program_files_of(worker.study(task)), task);
-}
-
-/// Returns whether there is a result of the task and of its program as it is now.
-bool has_result(const BenchmarkWorker& worker, const BenchmarkTask& task) {
-  const std::optional<ArchiveEntry> entry = stored_entry(worker, task);
-  return entry && changed_since(*entry, worker, task).empty();
-}
-
-/// Removes a result that an earlier version of the program made. Other workers remove it too, so
-/// the task must be claimed.
-void remove_stale_result(const BenchmarkWorker& worker, const BenchmarkTask& task) {
-  const std::optional<ArchiveEntry> entry = stored_entry(worker, task);
-  if (!entry) return;
-  const std::string changed = changed_since(*entry, worker, task);
-  if (changed.empty()) return;
-  worker.work.say(
-      formatted("{} has changed since the result of {} was computed: it is computed again", changed,
-                task.name()));
-  fs::remove(task.result());  // first, because an entry can be made of it
-  fs::remove(task.entry);
-}
-
-bool has_complete_runs(const fs::path& path) {
-  const ResultFile file(path);
-  return std::ranges::any_of(
-      file.cells(), [&](const StoredCell& cell) { return count_status(file, cell).complete > 0; });
-}
-
-/// The result of a task, which may be there without an entry, and the files of unfinished work.
-std::vector<fs::path> stored_files(const BenchmarkTask& task) {
-  std::vector<fs::path> files;
-  if (is_there(task.result())) files.push_back(task.result());
-  std::error_code none;
-  for (const auto& work : fs::directory_iterator(groups_of(task.result()), none))
-    files.push_back(work.path());
-  return files;
-}
-
-/// Removes what an earlier version of the program has stored for a task without an entry, and files
-/// of other studies without a complete run. Throws StudyError if there are runs of another study.
-void remove_stale_work(const BenchmarkWorker& worker, const BenchmarkTask& task) {
-  const Study study = worker.study(task);
-  const TextPairs files = program_files_of(study);
-  for (const fs::path& file : stored_files(task)) {
-    std::optional<ResultDescription> stored;
-    try {
-      stored = read_description(file);
-    } catch (const std::runtime_error&) {
-      continue;  // no result file, or an incomplete one
-    }
-    if (stored->study_sha256 == sha256(resolved_text(study))) {
-      const std::string changed = changed_file(program_files_in(stored->provenance), files, task);
-      if (changed.empty()) continue;
-      worker.work.say(formatted("{} has changed since work on {} began: it is begun anew", changed,
-                                task.name()));
-    } else if (has_complete_runs(file)) {
-      refuse_other_study(worker, task, file, stored->study_sha256, stored->study_runs);
-    }
-    fs::remove(file);
-  }
 }
 
 /// Runs a study, or continues it.
@@ -325,12 +175,6 @@ std::string date_of(const fs::path& path) {
   std::array<char, 32> text{};
   std::strftime(text.data(), text.size(), "%Y-%m-%d %H:%M UTC", &utc);
   return text.data();
-}
-
-/// Whether nobody can know if the program of a result has changed since.
-bool is_of_unknown_files(const BenchmarkTask& task) {
-  const ArchiveEntry entry = read_entry(task.entry);
-  return starts_program(entry.filter) && entry.program_files.empty();
 }
 
 /// Says which results are kept, in a line for each filter.

@@ -252,37 +252,54 @@ std::string studied_sentence(const StudyAnalysis& study) {
   const std::string cells = (study.cells.size() == 1 ? "One cell" : "Each of " + n + " cells") +
                             std::string(kCellIs) + " estimates ";
   if (study.has_truth) {
-    return cells + "the same " + runs + " simulated drives of " + time + " among " +
-           std::to_string(study.beacons) + " landmarks" + judged;
+    return cells +
+           (runs == "1" ? "one simulated drive of "
+                        : "the same " + runs + " simulated drives of ") +
+           time + " among " + std::to_string(study.beacons) + " landmarks" + judged;
   }
   if (study.own_drives > 0) return cells + runs + " recorded drives of up to " + time + ".";
   return cells + "one recorded drive of " + time +
          (runs == "1" ? " once." : ", " + runs + " times.");
 }
 
-/// "2 are consistent within 1.1: smoother, dead_reckoning (NEES ratio 0.99 to 1.01)".
-std::string answered_in_words(const std::vector<const CellAnalysis*>& cells,
-                              const StudyAnalysis& study) {
-  std::string labels;
+/// The ratios of some cells, as far as they have one: " (NEES ratio 0.99 to 1.01)".
+std::string ratios_in_words(const std::vector<const CellAnalysis*>& cells,
+                            const StudyAnalysis& study) {
   std::vector<double> ratios;
   for (const CellAnalysis* cell : cells) {
-    labels += (labels.empty() ? "" : ", ") + cell->label;
-    ratios.push_back(cell->verdict.ratio_estimate());
+    const double ratio = cell->verdict.ratio_estimate();
+    if (std::isfinite(ratio)) ratios.push_back(ratio);
   }
-  const Verdict& verdict = cells.front()->verdict;
-  const std::string within =
-      verdict.answer == Answer::consistent ? " within " + engine::exact_text(verdict.within) : "";
+  if (ratios.empty()) return "";
   const auto [least, most] = std::ranges::minmax(ratios);
-  const bool are_all = cells.size() > 1 && cells.size() == study.cells.size();
-  const std::string n = are_all ? "all" : std::to_string(cells.size());
-  return n + (cells.size() == 1 ? " is " : " are ") + answer_in_words(verdict) + within + ": " +
-         labels + " (" + study.imported.name_of_ratio() + " " + compact(least) +
-         (cells.size() == 1 ? "" : " to " + compact(most)) + ")";
+  return " (" + study.imported.name_of_ratio() + " " + compact(least) +
+         (ratios.size() == 1 ? "" : " to " + compact(most)) + ")";
 }
 
+std::string labels_of(const std::vector<const CellAnalysis*>& cells) {
+  std::string labels;
+  for (const CellAnalysis* cell : cells) labels += (labels.empty() ? "" : ", ") + cell->label;
+  return labels;
+}
+
+/// "2 are consistent within 1.1: smoother, dead_reckoning (NEES ratio 0.99 to 1.01)"; of a study of
+/// one cell: "ekf_slam is optimistic (NEES ratio 1.17)".
+std::string answered_in_words(const std::vector<const CellAnalysis*>& cells,
+                              const StudyAnalysis& study) {
+  const Verdict& verdict = cells.front()->verdict;
+  const std::string answer =
+      answer_in_words(verdict) +
+      (verdict.answer == Answer::consistent ? " within " + engine::exact_text(verdict.within) : "");
+  const std::string ratios = ratios_in_words(cells, study);
+  if (study.cells.size() == 1) return cells.front()->label + " is " + answer + ratios;
+  const std::string n = cells.size() == study.cells.size() ? "all" : std::to_string(cells.size());
+  return n + (cells.size() == 1 ? " is " : " are ") + answer + ": " + labels_of(cells) + ratios;
+}
+
+/// "Of 3 cells (a cell is ...), "; nothing if there is one.
 std::string of_cells(const StudyAnalysis& study) {
-  const std::string n = std::to_string(study.cells.size());
-  return "Of " + n + (n == "1" ? " cell" : " cells") + kCellIs + ", ";
+  if (study.cells.size() == 1) return "";
+  return "Of " + std::to_string(study.cells.size()) + " cells" + kCellIs + ", ";
 }
 
 /// How many cells have which answer, and which they are; empty for bounds, which are no estimates.
@@ -290,38 +307,51 @@ std::string answers_found(const StudyAnalysis& study) {
   const auto has_bound = [](const CellAnalysis& cell) { return has_bounds(cell.settings); };
   if (std::ranges::any_of(study.cells, has_bound)) return "";
   std::map<std::pair<Answer, std::string>, std::vector<const CellAnalysis*>> found;
+  std::vector<const CellAnalysis*> untested;
   for (const CellAnalysis& cell : study.cells) {
-    if (cell.verdict.answer == Answer::untested) continue;
-    found[{cell.verdict.answer, answer_in_words(cell.verdict)}].push_back(&cell);
+    if (cell.verdict.answer == Answer::untested) {
+      untested.push_back(&cell);
+    } else {
+      found[{cell.verdict.answer, answer_in_words(cell.verdict)}].push_back(&cell);
+    }
   }
   if (found.empty()) return "";
   std::string text;
   for (const auto& [answer, cells] : found) {
     text += (text.empty() ? "" : "; ") + answered_in_words(cells, study);
   }
+  if (!untested.empty()) text += "; not tested: " + labels_of(untested);
   return of_cells(study) + text + ". Where the " + study.imported.name_of_ratio() +
          " is 1, squared errors are as large as the filter claims.";
 }
 
 /// Which cells are nearest to the leading reference of a recorded drive and farthest from it, in
-/// the mean over runs; empty if fewer than two can be compared.
+/// the mean over runs; empty if fewer than two can be compared, if any has failed runs, which are
+/// at no distance, or if all are equally far as printed.
 std::string distances_found(const StudyAnalysis& study) {
-  if (study.references.empty() || study.own_drives > 0) return "";
+  if (study.references.empty() || study.own_drives > 0 || study.has_failures()) return "";
   const JudgedReference& reference = study.references.front();
   const auto score =
       reference.compares_raw() ? &ReferenceScores::rms : &ReferenceScores::aligned_rms;
-  std::map<double, std::string> found;
+  std::map<double, std::vector<const CellAnalysis*>> found;
   for (const CellAnalysis& cell : study.cells) {
     const double mean = cell.get<ReferenceAnalyses>().front().over_runs(score).summary.mean;
-    if (std::isfinite(mean)) found.emplace(mean, cell.label);
+    if (std::isfinite(mean)) found[mean].push_back(&cell);
   }
-  if (found.size() < 2) return "";
-  const auto& [least, nearest] = *found.begin();
-  const auto& [most, farthest] = *found.rbegin();
-  return of_cells(study) + nearest + " is the nearest to the reference " + reference.name +
-         ", with an RMS distance of " + compact(least) + " m in the mean over runs" +
+  if (found.empty() || compact(found.begin()->first) == compact(found.rbegin()->first)) return "";
+  const auto at = [&](const std::string& distance) {
+    std::vector<const CellAnalysis*> cells;
+    for (const auto& [mean, of_mean] : found) {
+      if (compact(mean) == distance) cells.insert(cells.end(), of_mean.begin(), of_mean.end());
+    }
+    return labels_of(cells) + (cells.size() == 1 ? " is" : " are");
+  };
+  const std::string least = compact(found.begin()->first), most = compact(found.rbegin()->first);
+  return of_cells(study) + at(least) + " the nearest to the reference " + reference.name +
+         ", with an RMS distance of " + least + " m" +
+         (study.runs_here == 1 ? "" : " in the mean over runs") +
          (reference.compares_raw() ? "" : " after the best rigid alignment of each") + ", and " +
-         farthest + " is the farthest, with " + compact(most) + " m.";
+         at(most) + " the farthest, with " + most + " m.";
 }
 
 /// What was found, as far as it can be said in a sentence; innovations have more than one answer.

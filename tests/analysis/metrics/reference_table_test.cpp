@@ -92,6 +92,29 @@ TEST(ReferencePage, BeginsWithTheNearestCellByTheDistanceThatIsCompared) {
   EXPECT_THAT(markdown_page(study, {}, {}), HasSubstr("ekf\\_slam is the nearest to"));
 }
 
+TEST(ReferencePage, NamesNoNearestCellAmongEqualOnes) {
+  StudyAnalysis study = shifted_study(true);
+  study.has_truth = false;
+  study.cells[1] = study.cells[0];
+  EXPECT_THAT(markdown_page(study, {}, {}), Not(HasSubstr("nearest")));
+}
+
+TEST(ReferencePage, NamesNoNearestCellWhereRunsFailed) {
+  StudyAnalysis study = shifted_study(true);
+  study.has_truth = false;
+  study.cells[1].failures.emplace_back();
+  EXPECT_THAT(markdown_page(study, {}, {}), Not(HasSubstr("nearest")));
+}
+
+TEST(StudyPage, OfOneCellBeginsWithItsAnswer) {
+  StudyAnalysis study = shifted_study(true);
+  study.references.clear();
+  study.has_truth = true;
+  study.cells.resize(1);
+  study.cells[0].verdict.answer = Answer::optimistic;
+  EXPECT_THAT(markdown_page(study, {}, {}), HasSubstr("\n\nekf\\_slam is optimistic"));
+}
+
 TEST(BaselineTable, PrintsEqualResultsAsTies) {
   StudyAnalysis study = shifted_study(true);
   study.cells[1].findings.put(study.cells[0].get<ReferenceAnalyses>());
