@@ -272,7 +272,7 @@ std::string ratios_in_words(const std::vector<const CellAnalysis*>& cells,
   }
   if (ratios.empty()) return "";
   const auto [least, most] = std::ranges::minmax(ratios);
-  return " (" + study.imported.name_of_ratio() + " " + compact(least) +
+  return std::string(" (") + study.imported.name_of_ratio() + " " + compact(least) +
          (ratios.size() == 1 ? "" : " to " + compact(most)) + ")";
 }
 

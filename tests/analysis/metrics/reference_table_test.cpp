@@ -112,7 +112,8 @@ TEST(StudyPage, OfOneCellBeginsWithItsAnswer) {
   study.has_truth = true;
   study.cells.resize(1);
   study.cells[0].verdict.answer = Answer::optimistic;
-  EXPECT_THAT(markdown_page(study, {}, {}), HasSubstr("\n\nekf\\_slam is optimistic"));
+  EXPECT_THAT(markdown_page(study, {}, {}),
+              HasSubstr("\n\nekf\\_slam is slightly optimistic. Where"));
 }
 
 TEST(BaselineTable, PrintsEqualResultsAsTies) {
