@@ -58,7 +58,7 @@ struct StudyAnalysis {
   bool rows_are_scans = true;  ///< whether poses are stored at scans only (record.rate = scan)
   std::size_t own_drives = 0;  ///< number of runs if each is a recorded drive of its own; else 0
   ImportedState imported;      ///< state of files that 'montecarta judge' made
-  std::string odometry;        ///< time and way of a recorded drive by its odometry; may be empty
+  std::string odometry;        ///< time, way and gaps of a recorded drive by its odometry, or empty
   std::vector<JudgedReference> references;  ///< references of a recorded drive; the first one leads
   std::size_t beacons = 0;                  ///< number of landmarks whose true positions are known
   CramerRaoBound bound;                     ///< least error of any filter without bias

@@ -78,7 +78,7 @@ struct Itinerary {
   std::vector<ReferencePath> references;  ///< references of a recorded drive
   std::size_t moving_controls = 1;        ///< number of leading components for Control::stands()
   bool has_truth = true;                  ///< true if drives have true poses, unlike recorded ones
-  double longest_hold = 0.0;  ///< [s] longest time that one row of recorded odometry moves for
+  double longest_hold = 0.0;  ///< [s] longest time for which a row of recorded odometry holds
 
   std::size_t steps() const { return step_time.size(); }
   std::size_t scans() const { return scan_step.size(); }

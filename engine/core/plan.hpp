@@ -58,7 +58,7 @@ struct ImportedError {
   bool has_pose = false;  ///< the estimate is a pose in the plane, and stored as well
 };
 
-/// Fact of the scenario of a recorded drive: its time and way by the odometry, in words.
+/// Fact of the scenario of a recorded drive: its time, way and gaps by the odometry, in words.
 inline constexpr const char* kOdometryFact = "odometry";
 
 /// One filter in one setting, repeated in runs; one curve of a figure.
