@@ -236,7 +236,10 @@ std::string markdown_table(const TextTable& table) {
   return hidden == 0 ? markdown : markdown + "\n... and " + std::to_string(hidden) + " rows more\n";
 }
 
-std::string studied_sentence(const StudyAnalysis& study) {
+namespace {
+
+/// What was studied. `cell_is` explains what a cell is, or is empty where that has been said.
+std::string studied(const StudyAnalysis& study, const char* cell_is) {
   const std::string n = std::to_string(study.cells.size());
   const std::string runs = std::to_string(study.runs_here);
   const std::string time = fixed_seconds(study.duration);
@@ -249,8 +252,8 @@ std::string studied_sentence(const StudyAnalysis& study) {
     return "Another program estimated " + runs + " runs of " + time +
            (study.cells.size() == 1 ? "" : " in each of " + n + " cells") + judged;
   }
-  const std::string cells = (study.cells.size() == 1 ? "One cell" : "Each of " + n + " cells") +
-                            std::string(kCellIs) + " estimates ";
+  const std::string cells =
+      (study.cells.size() == 1 ? "One cell" : "Each of " + n + " cells") + cell_is + " estimates ";
   if (study.has_truth) {
     return cells +
            (runs == "1" ? "one simulated drive of "
@@ -261,6 +264,12 @@ std::string studied_sentence(const StudyAnalysis& study) {
   return cells + "one recorded drive of " + time +
          (runs == "1" ? " once." : ", " + runs + " times.");
 }
+
+}  // namespace
+
+std::string studied_sentence(const StudyAnalysis& study) { return studied(study, kCellIs); }
+
+namespace {
 
 /// The ratios of some cells, as far as they have one: " (NEES ratio 0.99 to 1.01)".
 std::string ratios_in_words(const std::vector<const CellAnalysis*>& cells,
@@ -363,12 +372,10 @@ std::string found_sentences(const StudyAnalysis& study) {
 /// What a page begins with: what was found and what was studied.
 std::string first_paragraph(const StudyAnalysis& study) {
   const std::string found = found_sentences(study);
-  std::string studied = studied_sentence(study);
-  if (found.empty()) return studied;
-  const std::size_t at = studied.find(kCellIs);  // is said once
-  if (at != studied.npos) studied.erase(at, std::string_view(kCellIs).size());
-  return found + " " + studied;
+  return found.empty() ? studied_sentence(study) : found + " " + studied(study, "");
 }
+
+}  // namespace
 
 std::string markdown_page(const StudyAnalysis& study, const std::vector<Section>& sections,
                           const TextPairs& provenance) {
