@@ -281,15 +281,17 @@ std::string filters_of(const Study& study) {
 }
 
 /// Says that the disk takes longer than the filters, or nothing.
-TextPairs disk_limit(const Costs& costs, int threads, std::optional<double> stated) {
+TextPairs disk_limit(const StudyPlan& plan, const Costs& costs, int threads,
+                     std::optional<double> stated) {
   const double rate = stated.value_or(kWritingRate * threads);
   const double needed = costs.written / (costs.cpu_seconds / threads);
   if (needed <= rate) return {};
   return {{"disk",
            formatted("the limit: runs are made at {}/s and written at {}/s{}, which takes "
-                     "about {}: store fewer columns, or choose record.rate = scan",
+                     "about {}: store fewer columns{}",
                      bytes_text(needed), bytes_text(rate), stated ? " (--disk-rate)" : " at most",
-                     duration_text(costs.written / rate))}};
+                     duration_text(costs.written / rate),
+                     plan.columns.scans_only ? "" : ", or choose record.rate = scan")}};
 }
 
 /// Prints the overview of a study: title, time, size of the file, filters, runs.
@@ -309,7 +311,7 @@ void print_summary(const Study& study, const StudyPlan& plan, const Costs& costs
       {"runs", std::to_string(plan.runs_here()) + part +
                    (plan.cells.size() == 1 ? "" : formatted(" for each of {} cells", cells))},
       {"memory", memory_text(costs.memory(threads))}};
-  for (auto& item : disk_limit(costs, threads, disk_rate)) items.push_back(std::move(item));
+  for (auto& item : disk_limit(plan, costs, threads, disk_rate)) items.push_back(std::move(item));
   std::cout << wrapped(plan.title, output_width()) << "\n" << listing(items);
 }
 

@@ -60,7 +60,7 @@ std::vector<ListEntry> filters() {
   return entries;
 }
 
-/// Text of the default, and of the defaults for those kinds of scenario that have another one.
+/// Text of the default, and of those that hold where another setting has some value.
 std::string fallback_text(const Setting& setting) {
   const auto in_words = [](const std::string& value) {
     return value == kRequired       ? "none, it must be given"
@@ -69,10 +69,11 @@ std::string fallback_text(const Setting& setting) {
                                     : value;
   };
   std::string text;
-  if (setting.fallback_of_kind.size() < 2) text = in_words(setting.fallback.value_or(kRequired));
-  for (const auto& [kind, value] : setting.fallback_of_kind) {
-    text +=
-        formatted("{}{} if scenario.kind = {}", text.empty() ? "" : "; ", in_words(value), kind);
+  const auto kinds = std::ranges::count(setting.other_fallbacks, "kind", &OtherFallback::key);
+  if (kinds < 2) text = in_words(setting.fallback.value_or(kRequired));
+  for (const auto& [section, key, has, value] : setting.other_fallbacks) {
+    text += formatted("{}{} if {}.{} = {}", text.empty() ? "" : "; ", in_words(value), section, key,
+                      has);
   }
   return text;
 }

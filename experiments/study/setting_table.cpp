@@ -72,7 +72,7 @@ void require(Setting& setting, const char* example) {
 
 /// Gives a setting another default for recorded drives.
 void set_for_log(Setting& setting, const char* fallback) {
-  setting.fallback_of_kind.emplace_back("log", fallback);
+  setting.other_fallbacks.push_back({"scenario", "kind", "log", fallback});
 }
 
 /// Adds alpha_1 to alpha_4 (EQUATIONS 1).
@@ -264,7 +264,7 @@ void follow_scenario(Setting& setting) {
                     ". This is the value that the filters assume. The true one is that of "
                     "[scenario].";
   if (!setting.example.empty()) set_for_log(setting, kRequired);
-  setting.fallback_of_kind.emplace_back("simulated", kFromScenario);
+  setting.other_fallbacks.push_back({"scenario", "kind", "simulated", kFromScenario});
 }
 
 /// Adds what filters know at the start.
@@ -353,9 +353,10 @@ void add_record(const SectionOfTable& record) {
   set_for_log(columns, "pose, covariance, ancestry, final_map");
   record.count("full_runs", "0", 0, 1e7,
                "number of first runs for which particles, ancestry and maps are stored too");
-  set_for_log(record.choice("rate", {"control", "scan"},
-                            "whether poses are stored at control steps or scans"),
-              "scan");
+  Setting& rate = record.choice("rate", {"control", "scan"},
+                                "whether poses are stored at control steps or scans");
+  set_for_log(rate, "scan");
+  rate.other_fallbacks.push_back({"record", "columns", "sums", "scan"});  // what is added up
   record.count("map_rows", "0", 0, 100'000,
                "rows of the map's columns with unknown association. With 0 it is the number of "
                "landmarks of a simulated world, and most_landmarks for a recorded drive.");
@@ -374,14 +375,6 @@ std::vector<Setting> make_table() {
 }
 
 }  // namespace
-
-std::optional<std::string> Setting::fallback_for(std::string_view scenario_kind) const {
-  for (const auto& [of_kind, value] : fallback_of_kind) {
-    if (of_kind != scenario_kind) continue;
-    return value == kRequired ? std::nullopt : std::optional(value);
-  }
-  return fallback;
-}
 
 std::span<const Setting> study_settings() {
   static const std::vector<Setting> table = make_table();

@@ -21,6 +21,13 @@ struct Condition {
   std::vector<std::string> values;
 };
 
+/// A default that holds where another setting, which comes earlier in the table, has a value, or
+/// lists it.
+struct OtherFallback {
+  std::string section, key, has;  ///< the other setting, and its value
+  std::string value;              ///< default; kRequired for none, kFromScenario for the scenario's
+};
+
 /// One setting of a study file. The table of settings is used for parsing, checking, the resolved
 /// text, and `montecarta list settings`.
 struct Setting : Parameter {
@@ -28,11 +35,8 @@ struct Setting : Parameter {
   /// Conditions that must all hold for the setting to apply: on scenario.kind, then on the vehicle,
   /// the sensor or the noise of its section. The settings that they name come earlier in the table.
   std::vector<Condition> conditions = {};
-  /// Pairs (kind of scenario, default) for kinds with a default of their own. kFromScenario stands
-  /// for the scenario's value of that key, kRequired for no default.
-  std::vector<std::pair<std::string, std::string>> fallback_of_kind = {};
-
-  std::optional<std::string> fallback_for(std::string_view scenario_kind) const;
+  /// Defaults in place of `fallback`: the first one that holds.
+  std::vector<OtherFallback> other_fallbacks = {};
 };
 
 /// All settings but those of the filters, section by section in the order of the resolved text.

@@ -214,12 +214,6 @@ Settings::Settings(std::span<const IniEntry> entries, const std::string& name) {
   fill_in(name);
 }
 
-/// The kind of scenario. It is available before the other settings, which depend on it.
-std::string Settings::scenario_kind() const {
-  const auto given = values_.find({"scenario", "kind"});
-  return given == values_.end() ? "simulated" : given->second.text;
-}
-
 void Settings::take(const IniEntry& entry) {
   const Setting& setting = known_setting(entry);
   refuse_value_of_other_section(setting, entry);
@@ -231,7 +225,6 @@ void Settings::take(const IniEntry& entry) {
 }
 
 void Settings::fill_in(const std::string& name) {
-  const std::string kind = scenario_kind();
   for (const Setting& setting : study_settings()) {
     const auto given = values_.find({setting.section, setting.key});
     if (const Condition* broken = broken_condition(setting)) {
@@ -239,7 +232,7 @@ void Settings::fill_in(const std::string& name) {
       throw_out_of_place(setting, *broken, text(broken->section, broken->key), given->second.place);
     }
     if (given != values_.end()) continue;
-    const std::optional<std::string> fallback = setting.fallback_for(kind);
+    const std::optional<std::string> fallback = fallback_of(setting);
     if (!fallback) {
       throw StudyError("{}: {}.{} is missing ({}): add {} = {} under [{}]", name, setting.section,
                        setting.key, engine::first_sentence(setting.meaning), setting.key,
@@ -251,6 +244,17 @@ void Settings::fill_in(const std::string& name) {
         formatted("{}: {}.{} (not given)", name, setting.section, setting.key);
     values_[{setting.section, setting.key}] = {checked_value(setting, value, place), name};
   }
+}
+
+std::string Settings::scenario_kind() const { return text("scenario", "kind"); }
+
+/// The default of a setting; nullopt if it must be given.
+std::optional<std::string> Settings::fallback_of(const Setting& setting) const {
+  for (const OtherFallback& other : setting.other_fallbacks) {
+    if (!has(other.section, other.key) || !lists(other.section, other.key, other.has)) continue;
+    return other.value == kRequired ? std::nullopt : std::optional(other.value);
+  }
+  return setting.fallback;
 }
 
 /// The value of [scenario] for a setting that [belief] omits. Throws StudyError if a filter cannot

@@ -81,6 +81,7 @@ class Settings {
   using Name = std::pair<std::string, std::string>;
   void take(const IniEntry& entry);
   void fill_in(const std::string& name);
+  std::optional<std::string> fallback_of(const Setting& setting) const;
   std::string copied_from_scenario(const Setting& setting) const;
   const Condition* broken_condition(const Setting& setting) const;
   const SettingValue& at(std::string_view section, std::string_view key) const;

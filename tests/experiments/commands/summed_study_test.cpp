@@ -42,7 +42,7 @@ class SlowSummedStudy : public BlinkProgram {
     return "[study]\nname = blink\nruns = " + std::to_string(kSummedRuns) +
            "\n[scenario]\nworld = blink.csv\ncontrol_rate = 10\nscan_rate = 2.5\n[cells]\n"
            "cell = ekf_slam\n"
-           "cell = fastslam2 particles=10\n[record]\ncolumns = sums\nrate = scan\n";
+           "cell = fastslam2 particles=10\n[record]\ncolumns = sums\n";
   }
   Called run(const std::string& out, const std::vector<std::string>& more = {}) const {
     return call_with({"run", "blink.ini", "-o", out, "--quiet"}, more);
@@ -60,6 +60,9 @@ class SlowSummedStudy : public BlinkProgram {
       }
     }
     return words;
+  }
+  std::size_t rows_of_a_run(const std::string& name) const {
+    return ResultFile(folder_ / name).times().size();
   }
   /// The text of a table without columns of processor time.
   std::string table(const std::string& name) const {
@@ -80,7 +83,10 @@ class SlowSummedStudy : public BlinkProgram {
 
 TEST_F(SlowSummedStudy, SaysTheSameAsOneWithAllRows) {
   ASSERT_EQ(run("sums.h5").code, 0);
-  ASSERT_EQ(run("rows.h5", {"--set", "record.columns=pose,covariance,ancestry"}).code, 0);
+  ASSERT_EQ(run("rows.h5", {"--set", "record.columns=pose,covariance,ancestry", "--set",
+                            "record.rate=scan"})
+                .code,
+            0);
   EXPECT_LT(std::filesystem::file_size(folder_ / "sums.h5"),
             std::filesystem::file_size(folder_ / "rows.h5"));
   for (const char* name : {"sums", "rows"}) {
@@ -103,7 +109,7 @@ TEST_F(SlowSummedStudy, SaysTheSameAsOneWithAllRows) {
   }
 }
 
-TEST_F(SlowSummedStudy, JudgesTheScansOfOneWithAllRows) {
+TEST_F(SlowSummedStudy, StoresItsFirstRunsAtScansAndJudgesThoseOfOneWithAllRows) {
   const std::vector<std::string> from{"--set", "study.judge_from=2"};
   const auto verdict_in = [&](const std::string& name, std::vector<std::string> more) {
     more.insert(more.end(), from.begin(), from.end());
@@ -114,6 +120,7 @@ TEST_F(SlowSummedStudy, JudgesTheScansOfOneWithAllRows) {
   const std::string sums = verdict_in("sums.h5", {});
   EXPECT_THAT(sums, testing::HasSubstr("judged from 2 s on"));
   EXPECT_EQ(sums, verdict_in("rows.h5", {"--set", "record.columns=pose,covariance,ancestry"}));
+  EXPECT_GT(rows_of_a_run("rows.h5"), 3 * rows_of_a_run("sums.h5"));
 }
 
 TEST_F(SlowSummedStudy, HasTheSameBitsHoweverItIsRun) {
