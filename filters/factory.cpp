@@ -3,6 +3,7 @@
 
 #include "engine/errors.hpp"
 #include "filters/dead_reckoning.hpp"
+#include "filters/equivariant/equivariant_filter.hpp"
 #include "filters/fastslam/de_srcd.hpp"
 #include "filters/fastslam/fast_slam_filters.hpp"
 #include "filters/fastslam/sigma_filters.hpp"
@@ -34,6 +35,7 @@ std::vector<FilterKind> all_kinds() {
       ukf_slam_kind(),
       right_ukf_slam_kind(),
       left_ukf_slam_kind(),
+      polar_equivariant_kind(),
       fastslam1_kind(),
       fastslam2_kind(),
       ufastslam_kind(),
