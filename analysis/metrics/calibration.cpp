@@ -210,12 +210,18 @@ Figure pit_figure(const StudyAnalysis& study, const Chosen& chosen, Figure figur
 /// Figures of the ECDFs at the end of the run, by the Gaussian and, if they are stored, by the
 /// particles, and of the NEES at the end of each quarter.
 std::vector<Figure> calibration_figures(const StudyAnalysis& study) {
-  const auto is_last = [&](const JudgedPits& one, const char* by) {
-    return is_of_error(one) && one.by == by && one.time == study.times.back();
+  const auto is_gaussian = [](const JudgedPits& one) {
+    return one.by == std::string_view("Gaussian");
   };
-  return {pit_figure(study, is_of_nees, figure_of("nees_quantiles")),
+  const auto is_last = [&](const JudgedPits& one, const char* by) {
+    return one.by == by && one.time == study.times.back();
+  };
+  return {pit_figure(
+              study, [&](const JudgedPits& one) { return is_of_nees(one) && is_gaussian(one); },
+              figure_of("nees_quantiles")),
           pit_figure(
-              study, [&](const JudgedPits& one) { return is_last(one, "Gaussian"); },
+              study,
+              [&](const JudgedPits& one) { return is_of_error(one) && is_last(one, "Gaussian"); },
               figure_of("calibration")),
           pit_figure(
               study, [&](const JudgedPits& one) { return is_last(one, "particles"); },

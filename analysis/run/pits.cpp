@@ -7,6 +7,8 @@
 #include "analysis/statistics/spread.hpp"
 #include "engine/numbers/angle.hpp"
 
+#include <Eigen/Cholesky>
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -50,26 +52,74 @@ RunPits::Components drawn_pits(const RunRows& rows, const EffectiveDraws& draws,
   return pits;
 }
 
-/// Smoothed rank of the truth among the particles. E draws of equal weight leave E + 1 gaps of
-/// equal probability, and `within` spreads the truth evenly over its gap from run to run. For
-/// uneven weights E is the effective sample size.
-RunPits::Components rank_pits(const RunRows& rows, std::size_t scan, double within) {
+/// The particles of one scan as seen from the truth.
+struct Cloud {
+  std::vector<double> weight;          ///< {particle} of sum 1
+  std::vector<Eigen::Vector3d> error;  ///< {particle} pose minus truth
+  double effective = 0.0;              ///< effective sample size
+};
+
+Cloud cloud_at(const RunRows& rows, std::size_t scan) {
   const std::size_t M = rows.log_weight.size() / (rows.truth.size() / 3);
+  Cloud cloud;
+  double all = 0.0, squares = 0.0;
+  for (std::size_t i = scan * M; i < (scan + 1) * M; ++i) {
+    cloud.weight.push_back(std::exp(rows.log_weight[i]));
+    all += cloud.weight.back();
+    squares += cloud.weight.back() * cloud.weight.back();
+    Eigen::Vector3d& error = cloud.error.emplace_back();
+    for (std::size_t c = 0; c < 3; ++c)
+      error(static_cast<Eigen::Index>(c)) =
+          wrapped(c, rows.particle_pose[3 * i + c] - rows.truth[3 * scan + c]);
+  }
+  cloud.effective = all * all / squares;
+  for (double& weight : cloud.weight) weight /= all;
+  return cloud;
+}
+
+/// Smoothed rank of the truth, the weight of particles `below` it being given. E draws of equal
+/// weight leave E + 1 gaps of equal probability, and `within` spreads the truth evenly over its gap
+/// from run to run. For uneven weights E is the effective sample size.
+double smoothed_rank(double below, double E, double within) {
+  return (below * E + within) / (E + 1.0);
+}
+
+RunPits::Components rank_pits(const Cloud& cloud, double within) {
   RunPits::Components pits;
   for (std::size_t c = 0; c < 3; ++c) {
-    double below = 0.0, all = 0.0, squares = 0.0;
-    for (std::size_t i = scan * M; i < (scan + 1) * M; ++i) {
-      const double weight = std::exp(rows.log_weight[i]);
-      all += weight;
-      squares += weight * weight;
-      if (wrapped(c, rows.particle_pose[3 * i + c] - rows.truth[3 * scan + c]) < 0.0) {
-        below += weight;
-      }
+    double below = 0.0;
+    for (std::size_t i = 0; i < cloud.weight.size(); ++i) {
+      if (cloud.error[i](static_cast<Eigen::Index>(c)) < 0.0) below += cloud.weight[i];
     }
-    const double E = all * all / squares;
-    pits[c] = (below / all * E + within) / (E + 1.0);
+    pits[c] = smoothed_rank(below, cloud.effective, within);
   }
   return pits;
+}
+
+/// Rank of the squared distance of the truth among those of the particles, about the mean and by
+/// the covariance of particles and truth together, in which the truth is one more draw. NaN if that
+/// covariance is singular.
+double rank_of_distance(const Cloud& cloud, double within) {
+  const double E = cloud.effective, kept = E / (E + 1.0);
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < cloud.weight.size(); ++i)
+    mean += kept * cloud.weight[i] * cloud.error[i];
+  Eigen::Matrix3d P = mean * mean.transpose() / (E + 1.0);
+  for (std::size_t i = 0; i < cloud.weight.size(); ++i) {
+    const Eigen::Vector3d off = cloud.error[i] - mean;
+    P += kept * cloud.weight[i] * off * off.transpose();
+  }
+  const Eigen::LLT<Eigen::Matrix3d> L(P);
+  if (L.info() != Eigen::Success) return kNaN;
+  const auto distance = [&](const Eigen::Vector3d& error) {
+    return L.matrixL().solve(error - mean).squaredNorm();
+  };
+  const double of_truth = distance(Eigen::Vector3d::Zero());
+  double nearer = 0.0;
+  for (std::size_t i = 0; i < cloud.weight.size(); ++i) {
+    if (distance(cloud.error[i]) < of_truth) nearer += cloud.weight[i];
+  }
+  return smoothed_rank(nearer, E, within);
 }
 
 /// Transforms of one landmark of the map, a different one from run to run.
@@ -110,7 +160,13 @@ RunPits pits_of(const RunRows& rows, std::size_t particles, std::uint64_t run,
       pits.pose[m] = drawn ? drawn_pits(rows, draws_at(rows, particles, scans[m]), scans[m])
                            : gaussian_pits(rows.truth, estimate, scans[m]);
     }
-    if (pits.has_rank) pits.rank[m] = rank_pits(rows, scans[m], evenly(run));
+    if (!pits.has_rank) continue;
+    pits.rank[m].fill(kNaN);
+    pits.rank_nees[m] = kNaN;
+    if (!is_drawn(rows, scans[m])) continue;  // each particle is a Gaussian still, not one pose
+    const Cloud cloud = cloud_at(rows, scans[m]);
+    pits.rank[m] = rank_pits(cloud, evenly(run));
+    pits.rank_nees[m] = rank_of_distance(cloud, evenly(run));
   }
   if (pits.has_landmark) pits.landmark = landmark_pits(*rows.final_map, run, landmarks);
   return pits;

@@ -33,7 +33,10 @@ struct RunPits {
   /// {quarter} transforms of the pose by the Gaussian of the leading moments. At a scan that drew
   /// poses, the law is Student's t with as many effective draws about their mean.
   std::array<Components, kQuarters> pose{};
-  std::array<Components, kQuarters> rank{};  ///< {quarter} transforms by the weighted particles
+  /// {quarter} transforms by the weighted particles, at scans that drew poses.
+  std::array<Components, kQuarters> rank{};
+  /// {quarter} rank of the squared distance of the pose among those of the particles.
+  std::array<double, kQuarters> rank_nees{};
   std::array<double, 2> landmark{};          ///< x, y of one landmark of the final map
   /// {quarter} transforms of the leading NEES by its chi-square law.
   std::array<double, kQuarters> nees{};
@@ -41,7 +44,7 @@ struct RunPits {
   bool has_pose = false, has_rank = false, has_landmark = false, has_nees = false;
   static constexpr auto members() {
     using Pits = RunPits;
-    return std::tuple(&Pits::pose, &Pits::rank, &Pits::landmark, &Pits::nees, &Pits::has_pose,
+    return std::tuple(&Pits::pose, &Pits::rank, &Pits::rank_nees, &Pits::landmark, &Pits::nees, &Pits::has_pose,
                       &Pits::has_rank, &Pits::has_landmark, &Pits::has_nees);
   }
 };

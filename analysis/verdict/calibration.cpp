@@ -40,12 +40,13 @@ class PitJudge {
   std::map<std::size_t, EcdfBand> bands_;
 };
 
-/// The largest number of tests that a cell can have, so that cells with as many runs have the same
-/// band.
+/// The largest number of tests that a cell with or without stored particles can have, so that such
+/// cells with as many runs have the same band.
 std::size_t most_tests(const RunPits& run) {
   const bool has_components = run.has_pose || run.has_rank || run.has_landmark;
   const std::size_t of_components = 2 * kQuarters * kComponents.size() + run.landmark.size();
-  return run.nees.size() + (has_components ? of_components : 0);
+  return run.nees.size() + (has_components ? of_components : 0) +
+         (run.has_rank ? run.rank_nees.size() : 0);
 }
 
 }  // namespace
@@ -71,10 +72,14 @@ std::vector<JudgedPits> CalibrationSums::result(std::span<const double> times, d
                 PitOf::error, [=](const RunPits& run) { return run.landmark[c]; });
     }
   }
-  for (std::size_t m = 0; m < (first.has_nees ? kQuarters : 0); ++m) {
-    judge.add({kNees, "Gaussian", times[scans[m]], 0, {}}, PitOf::squared_error,
-              [=](const RunPits& run) { return run.nees[m]; });
-  }
+  const auto add_nees = [&](const char* by, auto RunPits::*pits) {
+    for (std::size_t m = 0; m < kQuarters; ++m) {
+      judge.add({kNees, by, times[scans[m]], 0, {}}, PitOf::squared_error,
+                [=](const RunPits& run) { return (run.*pits)[m]; });
+    }
+  };
+  if (first.has_nees) add_nees("Gaussian", &RunPits::nees);
+  if (first.has_rank) add_nees("particles", &RunPits::rank_nees);
   return std::move(judge.found);
 }
 

@@ -38,7 +38,7 @@ class CalibrationSums {
   void add(const RunPits& run) { runs_.push_back(run); }
   /// Tests all quantities at the ends of the quarters; `times` [s] are those of all scans. With a
   /// probability of at least `level`, no test finds a fault in a calibrated cell. The order is pose
-  /// by moments, ranks, landmarks, NEES; quantities that are not stored are absent.
+  /// by moments, ranks, landmarks, NEES, its ranks; quantities that are not stored are absent.
   Calibrations result(std::span<const double> times, double level) const;
   static constexpr auto parts() { return std::tuple(appended(&CalibrationSums::runs_)); }
 

@@ -64,11 +64,12 @@ void add_cloud(std::size_t M, double spread, RngStream& draw, RunRows& rows) {
   rows.particle_pose.resize(rows.truth.size() * M);
   rows.log_weight.resize(rows.truth.size() / 3 * M, -std::log(static_cast<double>(M)));
   for (const std::size_t scan : calibration_scans(rows.truth.size() / 3)) {
-    const double centre = draw.normal();
+    const Eigen::Vector3d centre(draw.normal(), draw.normal(), draw.normal());
     for (std::size_t i = scan * M; i < (scan + 1) * M; ++i) {
       for (std::size_t c = 0; c < 3; ++c) {
         rows.particle_pose[3 * i + c] =
-            rows.truth[3 * scan + c] + 0.1 * (spread * draw.normal() - centre);
+            rows.truth[3 * scan + c] +
+            0.1 * (spread * draw.normal() - centre[static_cast<Eigen::Index>(c)]);
       }
     }
   }
@@ -138,13 +139,59 @@ TEST(CellCalibration, RanksTheTruthAmongTheParticles) {
       sums.add(pits_of(rows, 0, run, {}));
     }
     const auto found = sums.result(study.times(), 0.999);
-    ASSERT_EQ(found.size(), 24u);
-    for (std::size_t i = 12; i < 24; ++i) {
+    ASSERT_EQ(found.size(), 28u);
+    for (std::size_t i = 12; i < 28; ++i) {
       EXPECT_EQ(found[i].by, "particles");
       EXPECT_EQ(found[i].test.verdict,
                 spread == 1.0 ? Calibration::calibrated : Calibration::too_narrow);
     }
   }
+}
+
+/// On a thin ring: far from the mean, whose covariance is wide.
+Eigen::Vector3d on_ring(RngStream& draw, double width) {
+  const double angle = kTwoPi * draw.uniform(), radius = 1.0 + width * draw.normal();
+  return {radius * std::cos(angle), radius * std::sin(angle), 0.01 * draw.normal()};
+}
+
+// The squared distance of the truth is among those of the particles, where the chi-square law would
+// find a fault; a truth off the ring is noticed.
+TEST(CellCalibration, RanksTheDistanceOfTheTruthWhateverTheShape) {
+  RngStream draw({.seed = 21});
+  for (const double width_of_truth : {0.05, 0.3}) {
+    CalibrationSums sums;
+    for (std::uint64_t run = 0; run < 400; ++run) {
+      constexpr std::size_t kParticles = 30;
+      RunRows rows;
+      rows.log_weight.assign(kParticles, -std::log(30.0));
+      for (std::size_t i = 0; i < kParticles; ++i) {
+        const Eigen::Vector3d pose = on_ring(draw, 0.05);
+        rows.particle_pose.insert(rows.particle_pose.end(), pose.begin(), pose.end());
+      }
+      const Eigen::Vector3d truth = on_ring(draw, width_of_truth);
+      rows.truth.assign(truth.begin(), truth.end());
+      sums.add(pits_of(rows, kParticles, run, {}));
+    }
+    const auto found = sums.result(std::vector<double>{1.0}, 0.95);
+    ASSERT_EQ(found.back().quantity, kNees);
+    ASSERT_EQ(found.back().by, "particles");
+    EXPECT_EQ(found.back().test.verdict == Calibration::calibrated, width_of_truth == 0.05);
+  }
+}
+
+TEST(CellCalibration, RanksNothingAmongParticlesThatTheScanDidNotDraw) {
+  RngStream draw({.seed = 5});
+  RunRows rows;
+  rows.truth.assign(3, 0.0);
+  add_cloud(20, 0.1, draw, rows);
+  rows.spread.mean.assign(3, 0.0);
+  rows.spread.covariance.assign(9, 1.0);
+  rows.mixture = rows.spread;
+  EXPECT_TRUE(std::isnan(pits_of(rows, 20, 0, {}).rank.back()[0]));
+  EXPECT_TRUE(std::isnan(pits_of(rows, 20, 0, {}).rank_nees.back()));
+  rows.mixture.covariance[0] = 2.0;
+  EXPECT_FALSE(std::isnan(pits_of(rows, 20, 0, {}).rank.back()[0]));
+  EXPECT_FALSE(std::isnan(pits_of(rows, 20, 0, {}).rank_nees.back()));
 }
 
 TEST(CellCalibration, TakesOneLandmarkOfEveryRun) {
