@@ -10,6 +10,7 @@ per line, as the .printed files have (printed.py):
     title = Ankishan et al. 2016
     page = ankishan2016_sim1       # its comparisons, of the .printed file, are claims, too
     compare = "position RMSE" a < b page=PAGE where="4" says="a beats b"
+    within = "scans with one" a 50 100 page=PAGE where="4" says="histories are lost"
     stated = "drive is of ([0-9]+) s" 1500 2100 page=PAGE where="4" says="it takes 30 min"
     settings = speed=3 srcd.particles=30 study=ankishan2016_sim1 where="4.1"
     open = where="4.1" says="a beats b" needs="a study of a and b"
@@ -19,10 +20,11 @@ per line, as the .printed files have (printed.py):
 `compare` takes the answer from a column of a table of results/PAGE.md, for what printed.py has not
 compared: the first number of each cell with its 95 % interval, or with the standard error behind
 +-. The right side may be a number, FACTOR*LABEL, or LABEL@PAGE, a cell of another page. It is
-decided where the intervals do not overlap. `stated` is confirmed if the number in a sentence of the
-page lies between two, which the paper rounds.
+decided where the intervals do not overlap. `within` is confirmed if the number of a cell lies
+between two, for columns without an interval, and `stated` if that in a sentence of the page does,
+which the paper rounds.
 `settings` are what the paper prints, with the names of the study file; those of a cell begin with
-its label. `open` is not measured yet, and `never` cannot be measured. `headline` is named in the
+its label, and `runs` are those of the page. `open` is not measured yet, and `never` cannot be measured. `headline` is named in the
 first sentences if it is contradicted; its second word is the name of a comparison in the tables.
 """
 import argparse
@@ -66,6 +68,14 @@ def compare_of(text):
     return fields | dict(zip(("column", "left", "relation", "right"), words))
 
 
+def within_of(text):
+    words = shlex.split(text)
+    if len(words) < 4:
+        raise ValueError('write within = "COLUMN" LABEL LEAST MOST page=... where=... says=...')
+    return (fields_of(words[4:], ["page", "where", "says"], []) |
+            {"column": words[0], "left": words[1], "ends": tuple(map(float, words[2:4]))})
+
+
 def stated_of(text):
     words = shlex.split(text)
     if len(words) < 3:
@@ -100,8 +110,9 @@ def headline_of(text):
 
 def read_claims(path):
     """The statements of a .claims file as a dictionary by key. Raises PrintedError."""
-    parsers = {"title": str, "page": str, "compare": compare_of, "stated": stated_of,
-               "settings": settings_of, "open": open_of, "never": never_of, "headline": headline_of}
+    parsers = {"title": str, "page": str, "compare": compare_of, "within": within_of,
+               "stated": stated_of, "settings": settings_of, "open": open_of, "never": never_of,
+               "headline": headline_of}
     claims = printed.read_statements(path, parsers, set(parsers) - {"title"})
     if claims["title"] is None:
         raise PrintedError(f"{path}: title = ... is missing: add it")
@@ -162,20 +173,24 @@ class Page:
                           for row in rows}
         return found
 
-    def number(self, column, label):
-        """The first number of a cell in a column: (mean, lower, upper)."""
+    def text_in(self, column, label):
+        """The text of the first cell in a column."""
         names = [[re.sub(r" \[.*", "", name) for name in table[0]] for table in self.tables]
         if not any(column in row for row in names):
             raise PrintedError(f"{self.path}: no table has the column '{column}': correct it")
         for row, table in zip(names, self.tables):
             for line in table[2:]:
                 if column in row and line[0] == label:
-                    number = number_of(line[row.index(column)], self.runs)
-                    if number is None:
-                        raise PrintedError(f"{self.path}: '{column}' of {label} has no interval: "
-                                           "take a column that has")
-                    return number
+                    return line[row.index(column)]
         raise PrintedError(f"{self.path}: no table has '{column}' of cell '{label}': correct it")
+
+    def number(self, column, label):
+        """The first number of a cell in a column: (mean, lower, upper)."""
+        number = number_of(self.text_in(column, label), self.runs)
+        if number is None:
+            raise PrintedError(f"{self.path}: '{column}' of {label} has no interval: take a column "
+                               "that has")
+        return number
 
 
 def key_of(statement):
@@ -195,7 +210,8 @@ class Study:
 
     def __init__(self, folder, name):
         self.path = os.path.join(folder, "studies", f"{name}.ini")
-        self.defaults = os.path.join(folder, "study", "setting_table.cpp")
+        self.defaults = [os.path.join(folder, "study", "setting_table.cpp")]
+        self.option_defaults = glob.glob(os.path.join(folder, "..", "filters", "*", "*.cpp"))
         self.settings, self.cells = {}, {}
         for line in content_of(self.path, "the study").splitlines():
             key, equals, value = (part.strip() for part in line.partition("#")[0].partition("="))
@@ -224,13 +240,16 @@ class Study:
         if dot:
             self.check(label)
         value = self.cells[label].get(option) if dot else self.settings.get(name)
-        if value is None and not dot:
-            default = re.search(rf'"{name}", "[^"]*", "([^"]+)"',
-                                content_of(self.defaults, "the table of defaults"))
-            value = default[1] if default else None
-        if value is None:
-            raise PrintedError(f"{self.path}: there is no setting '{name}': correct the name")
-        return value
+        if value is not None:
+            return value
+        written = (rf'"{option}",\s+"([^"]+)"' if dot else rf'"{name}", "[^"]*", "([^"]+)"')
+        found = {value for path in (self.option_defaults if dot else self.defaults)
+                 for value in re.findall(written, content_of(path, "the table of defaults"))}
+        if len(found) != 1:
+            raise PrintedError(f"{self.path}: there is no setting '{name}', or filters have "
+                               "different defaults of it: correct the name, or write it in the "
+                               "study")
+        return found.pop()
 
 
 # ---- Answers
@@ -273,6 +292,7 @@ class Ledger:
         for paper in self.papers:
             paper["rows"] = [row for page in paper["page"] for row in self.printed_rows(page)]
             paper["rows"] += map(self.compared, paper["compare"])
+            paper["rows"] += map(self.within, paper["within"])
             paper["rows"] += map(self.stated, paper["stated"])
             paper["rows"] += map(self.opened, paper["open"])
             paper["rows"] += [row_of(each["says"], each["where"], "-", NEVER,
@@ -339,6 +359,20 @@ class Ledger:
         return row_of(f"{claim['says']}; {name}", claim["where"], of_numbers(left) + against,
                       decided(claim["relation"], left, right), page=claim["page"], name=name)
 
+    def within(self, claim):
+        page = self.page(claim["page"])
+        text = page.text_in(claim["column"], claim["left"])
+        least, most = claim["ends"]
+        try:
+            number = float(text.split()[0])
+        except (ValueError, IndexError):
+            raise PrintedError(f"{page.path}: '{claim['column']}' of {claim['left']} is no number: "
+                               "take another column") from None
+        name = f"{claim['column']}: {claim['left']} from {least:g} to {most:g}"
+        answer = CONFIRMED if least <= number <= most else CONTRADICTED
+        return row_of(f"{claim['says']}; {name}", claim["where"], text, answer,
+                      page=claim["page"], name=name)
+
     def stated(self, claim):
         page = self.page(claim["page"])
         found = claim["words"].search(" ".join(page.text.split()))
@@ -358,8 +392,10 @@ class Ledger:
 
     def set_row(self, claim):
         study = self.study(claim["study"])
-        other = [f"{name} = {study.value(name)}" for name, value in claim["settings"]
-                 if study.value(name) != value]
+        ours = {name: str(self.page(claim["study"]).runs) if name == "runs" else study.value(name)
+                for name, _ in claim["settings"]}
+        other = [f"{name} = {ours[name]}" for name, value in claim["settings"]
+                 if ours[name] != value]
         return row_of(", ".join(f"{name} = {value}" for name, value in claim["settings"]),
                       claim["where"], ", ".join(other) or "-", OTHERWISE if other else AS_PRINTED,
                       study=claim["study"])
