@@ -24,8 +24,9 @@ decided where the intervals do not overlap. `within` is confirmed if the number 
 between two, for columns without an interval, and `stated` if that in a sentence of the page does,
 which the paper rounds.
 `settings` are what the paper prints, with the names of the study file; those of a cell begin with
-its label, and `runs` are those of the page. `open` is not measured yet, and `never` cannot be measured. `headline` is named in the
-first sentences if it is contradicted; its second word is the name of a comparison in the tables.
+its label, and `runs` are those of the page. `open` is not measured yet, and `never` cannot be
+measured. `headline` is named in the first sentences if it is contradicted; its second word is the
+name of a comparison in the tables.
 """
 import argparse
 import glob
