@@ -211,8 +211,8 @@ class Study:
 
     def __init__(self, folder, name):
         self.path = os.path.join(folder, "studies", f"{name}.ini")
-        self.defaults = [os.path.join(folder, "study", "setting_table.cpp")]
-        self.option_defaults = glob.glob(os.path.join(folder, "..", "filters", "*", "*.cpp"))
+        self.defaults = os.path.join(folder, "study", "setting_table.cpp")
+        self.sources = glob.glob(os.path.join(folder, "..", "filters", "*", "*.[ch]pp"))
         self.settings, self.cells = {}, {}
         for line in content_of(self.path, "the study").splitlines():
             key, equals, value = (part.strip() for part in line.partition("#")[0].partition("="))
@@ -243,13 +243,14 @@ class Study:
         value = self.cells[label].get(option) if dot else self.settings.get(name)
         if value is not None:
             return value
-        written = (rf'"{option}",\s+"([^"]+)"' if dot else rf'"{name}", "[^"]*", "([^"]+)"')
-        found = {value for path in (self.option_defaults if dot else self.defaults)
-                 for value in re.findall(written, content_of(path, "the table of defaults"))}
+        defaults = [] if dot else re.findall(rf'"{name}", "[^"]*", "([^"]+)"',
+                                             content_of(self.defaults, "the table of defaults"))
+        # Filters and vehicles have theirs in their sources.
+        found = set(defaults) or {default for path in self.sources for default in re.findall(
+            rf'parameter\(\s*"{option or name}",\s+"([^"]+)"', content_of(path, "a source"))}
         if len(found) != 1:
-            raise PrintedError(f"{self.path}: there is no setting '{name}', or filters have "
-                               "different defaults of it: correct the name, or write it in the "
-                               "study")
+            raise PrintedError(f"{self.path}: there is no setting '{name}', or not one default of "
+                               "it: correct the name, or write it in the study")
         return found.pop()
 
 

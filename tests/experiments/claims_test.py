@@ -69,8 +69,8 @@ DEFAULTS = 'scenario.number("scan_rate", "Hz", "5", 1, 2, "scans")'
 FILES = {"studies/s.ini": STUDY, "studies/s.printed": PRINTED, "studies/paper.claims": CLAIMS,
          "results/s.md": PAGE, "../analysis/metrics/errors.cpp": METRICS,
          "study/setting_table.cpp": DEFAULTS,
-         "../filters/one/one.cpp": 'number_parameter("h", "1.7", 0, 2), count("F",\n "1", 0)',
-         "../filters/one/two.cpp": 'number_parameter("h", "1.7", 0, 2), count("F", "2", 0)'}
+         "../filters/one/one.cpp": 'number_parameter("h", "1.7"), count_parameter(\n"F",\n "1")',
+         "../filters/one/two.cpp": 'number_parameter("h", "1.7"), count_parameter("F", "2")'}
 
 
 def text_of(ledger):
