@@ -21,8 +21,8 @@ per line, as the .printed files have (printed.py):
 compared: the first number of each cell with its 95 % interval, or with the standard error behind
 +-. The right side may be a number, FACTOR*LABEL, or LABEL@PAGE, a cell of another page. It is
 decided where the intervals do not overlap. `within` is confirmed if the number of a cell lies
-between two, for columns without an interval, and `stated` if that in a sentence of the page does,
-which the paper rounds.
+between two, or those of other cells, for columns without an interval; and `stated` if that in a
+sentence of the page does, which the paper rounds.
 `settings` are what the paper prints, with the names of the study file; those of a cell begin with
 its label, and `runs` are those of the page. `open` is not measured yet, and `never` cannot be
 measured. `headline` is named in the first sentences if it is contradicted; its second word is the
@@ -56,6 +56,7 @@ ORDER = (CONTRADICTED, CONFIRMED, UNDECIDED, NOT_YET, NEVER)  # of the lines of 
 PUBLISH = ": publish the page again"  # it is older than the claim
 BAND_WITHIN = 0.01  # a printed band is right if its ends are off by less than this share
 OURS = printed.OURS
+NUMBER = re.compile(r"([0-9.]+(e-?[0-9]+)?|inf)$")  # else it is the label of a cell
 
 
 # ---- Statements
@@ -74,7 +75,7 @@ def within_of(text):
     if len(words) < 4:
         raise ValueError('write within = "COLUMN" LABEL LEAST MOST page=... where=... says=...')
     return (fields_of(words[4:], ["page", "where", "says"], []) |
-            {"column": words[0], "left": words[1], "ends": tuple(map(float, words[2:4]))})
+            {"column": words[0], "left": words[1], "ends": words[2:4]})
 
 
 def stated_of(text):
@@ -175,15 +176,26 @@ class Page:
         return found
 
     def text_in(self, column, label):
-        """The text of the first cell in a column."""
-        names = [[re.sub(r" \[.*", "", name) for name in table[0]] for table in self.tables]
+        """The text of the first cell in a column, of tables in which a row is a cell of the study
+        or a size; in those of sweeps it is a value of an option."""
+        tables = [table for table in self.tables if table[0][0] != "filter"]
+        names = [[re.sub(r" \[.*", "", name) for name in table[0]] for table in tables]
         if not any(column in row for row in names):
             raise PrintedError(f"{self.path}: no table has the column '{column}': correct it")
-        for row, table in zip(names, self.tables):
+        for row, table in zip(names, tables):
             for line in table[2:]:
                 if column in row and line[0] == label:
                     return line[row.index(column)]
         raise PrintedError(f"{self.path}: no table has '{column}' of cell '{label}': correct it")
+
+    def bare_number(self, column, label):
+        """The first number of a cell in a column, which needs no interval."""
+        text = self.text_in(column, label)
+        try:
+            return float(text.split()[0])
+        except (ValueError, IndexError):
+            raise PrintedError(f"{self.path}: '{column}' of {label} is no number: take another "
+                               "column") from None
 
     def number(self, column, label):
         """The first number of a cell in a column: (mean, lower, upper)."""
@@ -363,16 +375,15 @@ class Ledger:
 
     def within(self, claim):
         page = self.page(claim["page"])
-        text = page.text_in(claim["column"], claim["left"])
-        least, most = claim["ends"]
-        try:
-            number = float(text.split()[0])
-        except (ValueError, IndexError):
-            raise PrintedError(f"{page.path}: '{claim['column']}' of {claim['left']} is no number: "
-                               "take another column") from None
-        name = f"{claim['column']}: {claim['left']} from {least:g} to {most:g}"
-        answer = CONFIRMED if least <= number <= most else CONTRADICTED
-        return row_of(f"{claim['says']}; {name}", claim["where"], text, answer,
+        column, (least, most) = claim["column"], claim["ends"]
+        number = page.bare_number(column, claim["left"])
+        lower, upper = (float(end) if NUMBER.match(end) else page.bare_number(column, end)
+                        for end in claim["ends"])
+        against = "" if NUMBER.match(least) else f" against {page.text_in(column, least)}"
+        name = f"{column}: {claim['left']} from {least} to {most}"
+        return row_of(f"{claim['says']}; {name}", claim["where"],
+                      page.text_in(column, claim["left"]) + against,
+                      CONFIRMED if lower <= number <= upper else CONTRADICTED,
                       page=claim["page"], name=name)
 
     def stated(self, claim):

@@ -167,9 +167,14 @@ class Claims(unittest.TestCase):
     def test_takes_a_number_without_an_interval_from_a_column(self):
         line = 'within = "{}" a {} page=s where="6" says="many"\n'
         for ends, answer in (("9 10", "confirmed"), ("9.1 10", "contradicted"),
-                             ("2 8.9", "contradicted")):
+                             ("2 8.9", "contradicted"), ("two_m10 inf", "confirmed"),
+                             ("3 two_m10", "confirmed")):
             answers = self.answers(claims=("headline", line.format("ESS", ends) + "headline"))
             self.assertEqual(answers[f"many; ESS: a from {ends.replace(' ', ' to ')}"], answer)
+        sweep = "| filter | ESS |\n|---|---:|\n| a | 3 |\n\n| cell | position"
+        answers = self.answers(claims=("headline", line.format("ESS", "9 9") + "headline"),
+                               md=("| cell | position", sweep))
+        self.assertEqual(answers["many; ESS: a from 9 to 9"], "confirmed")
         for column, piece in (("reference", "'reference' of a is no number"),
                               ("sharpness", "no table has the column 'sharpness'")):
             with self.assertRaisesRegex(printed.PrintedError, piece):
@@ -197,7 +202,7 @@ class Claims(unittest.TestCase):
     def test_refuses_a_line_that_it_does_not_understand(self):
         for line in ("quote = 3", "title = again", "compare = \"x\" a ~ b page=s where=1 says=x",
                      "compare = \"x\" a < b page=s", "stated = x page=s",
-                     "within = \"x\" a 1 page=s where=1 says=x", "within = \"x\" a 1 b page=s",
+                     "within = \"x\" a 1 page=s where=1 says=x", "within = \"x\" a 1 2 page=s",
                      "settings = study=s where=1", "open = where=1",
                      "never = where=1 says=x needs=y", "headline = s says=x"):
             with self.assertRaisesRegex(printed.PrintedError, "paper.claims:2: "):
