@@ -505,7 +505,9 @@ def print_ledger(ledger):
         "*undecided* unless all agree. Claims of our own, in the last table but one, are not "
         "counted. A claim in words "
         "with a column of a page is answered by both numbers, and decided if their intervals do "
-        "not overlap. *Stays above from* is the time [s] at which the average NEES leaves its band "
+        "not overlap; *from a to b* is confirmed if a number whose column has no interval lies "
+        "between the two. Where a world of ours takes the place of one that was never published, "
+        "printed numbers are *undecided*. *Stays above from* is the time [s] at which the average NEES leaves its band "
         "for good, *share inside* the share of scans in the band. What *agrees* is explained in "
         "[STUDY_FILES](../STUDY_FILES.md#compare-with-what-a-paper-printed); a number that does is "
         "confirmed.")
