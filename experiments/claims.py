@@ -488,8 +488,7 @@ def print_ledger(ledger):
         f"{ledger.count(CONTRADICTED)} contradicted, {ledger.count(UNDECIDED)} undecided, "
         + (f"{open_ones} not measured yet{again}, " if open_ones else "") + "and "
         f"{ledger.count(NEVER)} cannot be measured. Of those confirmed, "
-        f"{ledger.count(CONFIRMED, is_number=True)} are printed numbers, which says little: the "
-        "number of a single run is confirmed if it lies among our runs, which differ much. "
+        f"{ledger.count(CONFIRMED, is_number=True)} are printed numbers. "
         + "".join(["Contradicted is, above all, ", ", ".join(
             f"[that {each['says']}]({each['row'][0]}.md)" for each in ledger.headlines), "."]
             if ledger.headlines else []))
