@@ -506,9 +506,9 @@ def print_ledger(ledger):
         "with a column of a page is answered by both numbers, and decided if their intervals do "
         "not overlap; *from a to b* is confirmed if a number whose column has no interval lies "
         "between the two. Where another world takes the place of one that the paper does not name "
-        "or publish, its numbers are *undecided*. *Stays above from* is the time [s] at which the average "
-        "NEES leaves its band for good, *share inside* the share of scans in the band. What "
-        "*agrees* is explained in "
+        "or publish, its numbers are *undecided*. *Stays above from* is the time [s] at which the "
+        "average NEES leaves its band for good, *share inside* the share of scans in the band. "
+        "What *agrees* is explained in "
         "[STUDY_FILES](../STUDY_FILES.md#compare-with-what-a-paper-printed); a number that does is "
         "confirmed.")
     for paper in ledger.papers:
