@@ -10,6 +10,7 @@ per line, as the .printed files have (printed.py):
     title = Ankishan et al. 2016
     page = ankishan2016_sim1       # its comparisons, of the .printed file, are claims, too
     compare = "position RMSE" a < b page=PAGE where="4" says="a beats b"
+    within = "scans with one" a 50 100 page=PAGE where="4" says="histories are lost"
     stated = "drive is of ([0-9]+) s" 1500 2100 page=PAGE where="4" says="it takes 30 min"
     settings = speed=3 srcd.particles=30 study=ankishan2016_sim1 where="4.1"
     open = where="4.1" says="a beats b" needs="a study of a and b"
@@ -19,11 +20,13 @@ per line, as the .printed files have (printed.py):
 `compare` takes the answer from a column of a table of results/PAGE.md, for what printed.py has not
 compared: the first number of each cell with its 95 % interval, or with the standard error behind
 +-. The right side may be a number, FACTOR*LABEL, or LABEL@PAGE, a cell of another page. It is
-decided where the intervals do not overlap. `stated` is confirmed if the number in a sentence of the
-page lies between two, which the paper rounds.
+decided where the intervals do not overlap. `within` is confirmed if the number of a cell lies
+between two, or those of other cells, for columns without an interval; and `stated` if that in a
+sentence of the page does, which the paper rounds.
 `settings` are what the paper prints, with the names of the study file; those of a cell begin with
-its label. `open` is not measured yet, and `never` cannot be measured. `headline` is named in the
-first sentences if it is contradicted; its second word is the name of a comparison in the tables.
+its label, and `runs` are those of the page. `open` is not measured yet, and `never` cannot be
+measured. `headline` is named in the first sentences if it is contradicted; its second word is the
+name of a comparison in the tables.
 """
 import argparse
 import glob
@@ -53,6 +56,7 @@ ORDER = (CONTRADICTED, CONFIRMED, UNDECIDED, NOT_YET, NEVER)  # of the lines of 
 PUBLISH = ": publish the page again"  # it is older than the claim
 BAND_WITHIN = 0.01  # a printed band is right if its ends are off by less than this share
 OURS = printed.OURS
+NUMBER = re.compile(r"([0-9.]+(e-?[0-9]+)?|inf)$")  # else it is the label of a cell
 
 
 # ---- Statements
@@ -64,6 +68,14 @@ def compare_of(text):
         raise ValueError('write compare = "COLUMN" LABEL < LABEL page=... where=... says=...')
     fields = fields_of(words[4:], ["page", "where", "says"], [])
     return fields | dict(zip(("column", "left", "relation", "right"), words))
+
+
+def within_of(text):
+    words = shlex.split(text)
+    if len(words) < 4:
+        raise ValueError('write within = "COLUMN" LABEL LEAST MOST page=... where=... says=...')
+    return (fields_of(words[4:], ["page", "where", "says"], []) |
+            {"column": words[0], "left": words[1], "ends": words[2:4]})
 
 
 def stated_of(text):
@@ -100,8 +112,9 @@ def headline_of(text):
 
 def read_claims(path):
     """The statements of a .claims file as a dictionary by key. Raises PrintedError."""
-    parsers = {"title": str, "page": str, "compare": compare_of, "stated": stated_of,
-               "settings": settings_of, "open": open_of, "never": never_of, "headline": headline_of}
+    parsers = {"title": str, "page": str, "compare": compare_of, "within": within_of,
+               "stated": stated_of, "settings": settings_of, "open": open_of, "never": never_of,
+               "headline": headline_of}
     claims = printed.read_statements(path, parsers, set(parsers) - {"title"})
     if claims["title"] is None:
         raise PrintedError(f"{path}: title = ... is missing: add it")
@@ -162,20 +175,35 @@ class Page:
                           for row in rows}
         return found
 
-    def number(self, column, label):
-        """The first number of a cell in a column: (mean, lower, upper)."""
-        names = [[re.sub(r" \[.*", "", name) for name in table[0]] for table in self.tables]
+    def text_in(self, column, label):
+        """The text of the first cell in a column, of tables in which a row is a cell of the study
+        or a size; in those of sweeps it is a value of an option."""
+        tables = [table for table in self.tables if table[0][0] != "filter"]
+        names = [[re.sub(r" \[.*", "", name) for name in table[0]] for table in tables]
         if not any(column in row for row in names):
             raise PrintedError(f"{self.path}: no table has the column '{column}': correct it")
-        for row, table in zip(names, self.tables):
+        for row, table in zip(names, tables):
             for line in table[2:]:
                 if column in row and line[0] == label:
-                    number = number_of(line[row.index(column)], self.runs)
-                    if number is None:
-                        raise PrintedError(f"{self.path}: '{column}' of {label} has no interval: "
-                                           "take a column that has")
-                    return number
+                    return line[row.index(column)]
         raise PrintedError(f"{self.path}: no table has '{column}' of cell '{label}': correct it")
+
+    def bare_number(self, column, label):
+        """The first number of a cell in a column, which needs no interval."""
+        text = self.text_in(column, label)
+        try:
+            return float(text.split()[0])
+        except (ValueError, IndexError):
+            raise PrintedError(f"{self.path}: '{column}' of {label} is no number: take another "
+                               "column") from None
+
+    def number(self, column, label):
+        """The first number of a cell in a column: (mean, lower, upper)."""
+        number = number_of(self.text_in(column, label), self.runs)
+        if number is None:
+            raise PrintedError(f"{self.path}: '{column}' of {label} has no interval: take a column "
+                               "that has")
+        return number
 
 
 def key_of(statement):
@@ -196,6 +224,7 @@ class Study:
     def __init__(self, folder, name):
         self.path = os.path.join(folder, "studies", f"{name}.ini")
         self.defaults = os.path.join(folder, "study", "setting_table.cpp")
+        self.sources = glob.glob(os.path.join(folder, "..", "filters", "*", "*.[ch]pp"))
         self.settings, self.cells = {}, {}
         for line in content_of(self.path, "the study").splitlines():
             key, equals, value = (part.strip() for part in line.partition("#")[0].partition("="))
@@ -224,13 +253,17 @@ class Study:
         if dot:
             self.check(label)
         value = self.cells[label].get(option) if dot else self.settings.get(name)
-        if value is None and not dot:
-            default = re.search(rf'"{name}", "[^"]*", "([^"]+)"',
-                                content_of(self.defaults, "the table of defaults"))
-            value = default[1] if default else None
-        if value is None:
-            raise PrintedError(f"{self.path}: there is no setting '{name}': correct the name")
-        return value
+        if value is not None:
+            return value
+        defaults = [] if dot else re.findall(rf'"{name}", "[^"]*", "([^"]+)"',
+                                             content_of(self.defaults, "the table of defaults"))
+        # Filters and vehicles have theirs in their sources.
+        found = set(defaults) or {default for path in self.sources for default in re.findall(
+            rf'parameter\(\s*"{option or name}",\s+"([^"]+)"', content_of(path, "a source"))}
+        if len(found) != 1:
+            raise PrintedError(f"{self.path}: there is no setting '{name}', or not one default of "
+                               "it: correct the name, or write it in the study")
+        return found.pop()
 
 
 # ---- Answers
@@ -273,6 +306,7 @@ class Ledger:
         for paper in self.papers:
             paper["rows"] = [row for page in paper["page"] for row in self.printed_rows(page)]
             paper["rows"] += map(self.compared, paper["compare"])
+            paper["rows"] += map(self.within, paper["within"])
             paper["rows"] += map(self.stated, paper["stated"])
             paper["rows"] += map(self.opened, paper["open"])
             paper["rows"] += [row_of(each["says"], each["where"], "-", NEVER,
@@ -339,6 +373,19 @@ class Ledger:
         return row_of(f"{claim['says']}; {name}", claim["where"], of_numbers(left) + against,
                       decided(claim["relation"], left, right), page=claim["page"], name=name)
 
+    def within(self, claim):
+        page = self.page(claim["page"])
+        column, (least, most) = claim["column"], claim["ends"]
+        number = page.bare_number(column, claim["left"])
+        lower, upper = (float(end) if NUMBER.match(end) else page.bare_number(column, end)
+                        for end in claim["ends"])
+        against = "" if NUMBER.match(least) else f" against {page.text_in(column, least)}"
+        name = f"{column}: {claim['left']} from {least} to {most}"
+        return row_of(f"{claim['says']}; {name}", claim["where"],
+                      page.text_in(column, claim["left"]) + against,
+                      CONFIRMED if lower <= number <= upper else CONTRADICTED,
+                      page=claim["page"], name=name)
+
     def stated(self, claim):
         page = self.page(claim["page"])
         found = claim["words"].search(" ".join(page.text.split()))
@@ -358,8 +405,10 @@ class Ledger:
 
     def set_row(self, claim):
         study = self.study(claim["study"])
-        other = [f"{name} = {study.value(name)}" for name, value in claim["settings"]
-                 if study.value(name) != value]
+        ours = {name: str(self.page(claim["study"]).runs) if name == "runs" else study.value(name)
+                for name, _ in claim["settings"]}
+        other = [f"{name} = {ours[name]}" for name, value in claim["settings"]
+                 if ours[name] != value]
         return row_of(", ".join(f"{name} = {value}" for name, value in claim["settings"]),
                       claim["where"], ", ".join(other) or "-", OTHERWISE if other else AS_PRINTED,
                       study=claim["study"])
@@ -439,8 +488,7 @@ def print_ledger(ledger):
         f"{ledger.count(CONTRADICTED)} contradicted, {ledger.count(UNDECIDED)} undecided, "
         + (f"{open_ones} not measured yet{again}, " if open_ones else "") + "and "
         f"{ledger.count(NEVER)} cannot be measured. Of those confirmed, "
-        f"{ledger.count(CONFIRMED, is_number=True)} are printed numbers, which says little: the "
-        "number of a single run is confirmed if it lies among our runs, which differ much. "
+        f"{ledger.count(CONFIRMED, is_number=True)} are printed numbers. "
         + "".join(["Contradicted is, above all, ", ", ".join(
             f"[that {each['says']}]({each['row'][0]}.md)" for each in ledger.headlines), "."]
             if ledger.headlines else []))
@@ -456,8 +504,11 @@ def print_ledger(ledger):
         "*undecided* unless all agree. Claims of our own, in the last table but one, are not "
         "counted. A claim in words "
         "with a column of a page is answered by both numbers, and decided if their intervals do "
-        "not overlap. *Stays above from* is the time [s] at which the average NEES leaves its band "
-        "for good, *share inside* the share of scans in the band. What *agrees* is explained in "
+        "not overlap; *from a to b* is confirmed if a number whose column has no interval lies "
+        "between the two. Where another world takes the place of one that the paper does not name "
+        "or publish, its numbers are *undecided*. *Stays above from* is the time [s] at which the "
+        "average NEES leaves its band for good, *share inside* the share of scans in the band. "
+        "What *agrees* is explained in "
         "[STUDY_FILES](../STUDY_FILES.md#compare-with-what-a-paper-printed); a number that does is "
         "confirmed.")
     for paper in ledger.papers:

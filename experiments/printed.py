@@ -10,6 +10,7 @@ The .printed file beside a study has one statement per line:
     source = Authors: title, year; Table 1
     runs = 20                  # number of runs over which the paper averages
     baseline = fastslam2       # if its number is far off, other cells are not compared
+    substitute = web_loop      # the world in place of the paper's: no number is compared
     band = position 1.3 2.79   # the band that the paper drew for its average NEES
     value = cell=srcd metric=position_rmse printed=2.8211 note="Table 1"
     value = cell=ufastslam metric=cpu_seconds printed=1.82 relative_to=fastslam2 note="Table 3"
@@ -156,7 +157,8 @@ def read_statements(path, parsers, repeated):
 def read_printed(path):
     """The statements of a .printed file as a dictionary by key. Raises PrintedError."""
     printed = read_statements(
-        path, {"source": str, "runs": count_in, "baseline": str, "band": band_of,
+        path, {"source": str, "runs": count_in, "baseline": str, "substitute": str,
+               "band": band_of,
                "value": value_of, "claim": claim_of, "assume": str},
         ("band", "value", "claim", "assume"))
     bands = dict(printed["band"])
@@ -328,7 +330,10 @@ def judge_value(value, printed, measured, batches):
 
 
 def another_world(value, printed, measured, batches):
-    """The verdict if the baseline is off too far in the same metric; else None."""
+    """The verdict if the world is a substitute, or if the baseline is off too far in the same
+    metric; else None."""
+    if printed["substitute"]:
+        return f"another world: {printed['substitute']} in place of the paper's"
     if value["cell"] == printed["baseline"]:
         return None
     for other in printed["value"]:
@@ -505,6 +510,9 @@ def how_sure(printed, measured, values):
              "the paper does not say of how many its numbers are")
     sentence = (f"How sure: each cell has {ours} complete runs ({paper}), cells are compared run "
                 f"by run, and intervals are at {LEVEL * 100:.0f} %")
+    if printed["substitute"]:
+        return (sentence + f"; {printed['substitute']} stands in place of the paper's world, so "
+                "that its numbers are not compared, only orders of filters.")
     for value, (mean, _, verdict) in values:
         if value["cell"] == printed["baseline"] and verdict.startswith("not reproduced"):
             return (sentence + f"; but the {metric_in_words(value['metric'])} of {value['cell']} "
@@ -516,7 +524,7 @@ def how_sure(printed, measured, values):
 def lead(printed, measured, values, claims):
     """Three sentences as Markdown: what the paper says, what we find, how sure that is."""
     of_paper = [[each for each in judgements if not each[0].get("note", "").startswith(OURS)]
-                for judgements in (values, claims)]
+                for judgements in ([] if printed["substitute"] else values, claims)]
     sentences = (said_by_paper(printed["source"], *of_paper), found_by_us(*of_paper),
                  how_sure(printed, measured, of_paper[0]))
     return textwrap.fill(" ".join(map(escaped, sentences)), 100, break_long_words=False,

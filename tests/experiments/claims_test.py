@@ -68,7 +68,9 @@ METRICS = '{"position_rmse", "m", "x"}, {"nees", "1", "x"}'
 DEFAULTS = 'scenario.number("scan_rate", "Hz", "5", 1, 2, "scans")'
 FILES = {"studies/s.ini": STUDY, "studies/s.printed": PRINTED, "studies/paper.claims": CLAIMS,
          "results/s.md": PAGE, "../analysis/metrics/errors.cpp": METRICS,
-         "study/setting_table.cpp": DEFAULTS}
+         "study/setting_table.cpp": DEFAULTS,
+         "../filters/one/one.cpp": 'number_parameter("h", "1.7"), count_parameter(\n"F",\n "1")',
+         "../filters/one/two.cpp": 'number_parameter("h", "1.7"), count_parameter("F", "2")'}
 
 
 def text_of(ledger):
@@ -125,6 +127,17 @@ class Claims(unittest.TestCase):
         self.assertEqual([row["answer"] for row in rows], ["as printed", "not as printed"])
         self.assertEqual(rows[1]["measured"], "a.particles = 30")
 
+    def test_options_of_a_filter_have_the_default_of_its_source(self):
+        line = "settings = two_m10.h=1.7 runs=20 study=s where=3\n"
+        rows = self.ledger(claims=("headline", line + "headline")).papers[0]["set"]
+        self.assertEqual(rows[2]["answer"], "as printed")
+        rows = self.ledger(claims=("headline", line.replace("20", "30").replace("1.7", "3")
+                                   + "headline")).papers[0]["set"]
+        self.assertEqual(rows[2]["measured"], "two_m10.h = 1.7, runs = 20")
+        for other in ("F", "g"):  # two filters have different ones, and none has any
+            with self.assertRaisesRegex(printed.PrintedError, "there is no setting 'a." + other):
+                self.ledger(claims=("a.particles=3 ", f"a.{other}=1 "))
+
     def test_refuses_a_claim_about_what_does_not_exist(self):
         for end, old, new, piece in (
                 ("claims", "page = s", "page = t", "t.md: the page cannot be read"),
@@ -151,6 +164,22 @@ class Claims(unittest.TestCase):
                                    md=("Study:", table.format(wrong)))
             self.assertEqual(answers["alike; wrong: a < 1.5*a@s"], answer)
 
+    def test_takes_a_number_without_an_interval_from_a_column(self):
+        line = 'within = "{}" a {} page=s where="6" says="many"\n'
+        for ends, answer in (("9 10", "confirmed"), ("9.1 10", "contradicted"),
+                             ("2 8.9", "contradicted"), ("two_m10 inf", "confirmed"),
+                             ("3 two_m10", "confirmed")):
+            answers = self.answers(claims=("headline", line.format("ESS", ends) + "headline"))
+            self.assertEqual(answers[f"many; ESS: a from {ends.replace(' ', ' to ')}"], answer)
+        sweep = "| filter | ESS |\n|---|---:|\n| a | 3 |\n\n| cell | position"
+        answers = self.answers(claims=("headline", line.format("ESS", "9 9") + "headline"),
+                               md=("| cell | position", sweep))
+        self.assertEqual(answers["many; ESS: a from 9 to 9"], "confirmed")
+        for column, piece in (("reference", "'reference' of a is no number"),
+                              ("sharpness", "no table has the column 'sharpness'")):
+            with self.assertRaisesRegex(printed.PrintedError, piece):
+                self.answers(claims=("headline", line.format(column, "1 2") + "headline"))
+
     def test_takes_a_number_from_a_sentence(self):
         line = 'stated = "is of ([0-9]+) s" 1500 2100 page=s where="6" says="long"\n'
         for sentence, answer in (("The drive\nis of 1549 s.", "confirmed"),
@@ -173,6 +202,7 @@ class Claims(unittest.TestCase):
     def test_refuses_a_line_that_it_does_not_understand(self):
         for line in ("quote = 3", "title = again", "compare = \"x\" a ~ b page=s where=1 says=x",
                      "compare = \"x\" a < b page=s", "stated = x page=s",
+                     "within = \"x\" a 1 page=s where=1 says=x", "within = \"x\" a 1 2 page=s",
                      "settings = study=s where=1", "open = where=1",
                      "never = where=1 says=x needs=y", "headline = s says=x"):
             with self.assertRaisesRegex(printed.PrintedError, "paper.claims:2: "):

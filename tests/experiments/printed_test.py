@@ -91,6 +91,17 @@ class Printed(unittest.TestCase):
                          ["not reproduced: 4.2 times as large",
                           "another world: b: 4.2 times as large"])
 
+    def test_numbers_of_a_substitute_for_the_world_are_not_compared(self):
+        measured = self.measured({"a": [1.0, 1.1], "b": [5.0, 5.1]})
+        text = ("source = A paper\nsubstitute = loop\nclaim = position_rmse a < b\n"
+                "value = cell=a metric=position_rmse printed=1.05\n"
+                "value = cell=b metric=position_rmse printed=1.2\n")
+        other = "another world: loop in place of the paper's"
+        self.assertEqual(self.verdicts(text, measured), [other, other, "holds"])
+        lead = self.lead(text, measured)
+        self.assertNotIn("printed number", lead)
+        self.assertIn("loop stands in place of the paper's world", lead)
+
     def test_claims_are_judged_run_by_run(self):
         # The runs differ by far more than the cells, which differ in each run.
         base = np.linspace(1.0, 100.0, 50)
