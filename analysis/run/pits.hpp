@@ -37,15 +37,15 @@ struct RunPits {
   std::array<Components, kQuarters> rank{};
   /// {quarter} rank of the squared distance of the pose among those of the particles.
   std::array<double, kQuarters> rank_nees{};
-  std::array<double, 2> landmark{};          ///< x, y of one landmark of the final map
+  std::array<double, 2> landmark{};  ///< x, y of one landmark of the final map
   /// {quarter} transforms of the leading NEES by its chi-square law.
   std::array<double, kQuarters> nees{};
   /// Whether the data behind each transform are stored.
   bool has_pose = false, has_rank = false, has_landmark = false, has_nees = false;
   static constexpr auto members() {
     using Pits = RunPits;
-    return std::tuple(&Pits::pose, &Pits::rank, &Pits::rank_nees, &Pits::landmark, &Pits::nees, &Pits::has_pose,
-                      &Pits::has_rank, &Pits::has_landmark, &Pits::has_nees);
+    return std::tuple(&Pits::pose, &Pits::rank, &Pits::rank_nees, &Pits::landmark, &Pits::nees,
+                      &Pits::has_pose, &Pits::has_rank, &Pits::has_landmark, &Pits::has_nees);
   }
 };
 
