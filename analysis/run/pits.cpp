@@ -52,34 +52,48 @@ RunPits::Components drawn_pits(const RunRows& rows, const EffectiveDraws& draws,
   return pits;
 }
 
-/// The particles of one scan as seen from the truth.
+/// Particles of one scan as seen from the truth, whose own error is zero.
 struct Cloud {
-  std::vector<double> weight;          ///< {particle} of sum 1
+  std::vector<double> weight;          ///< {particle}
   std::vector<Eigen::Vector3d> error;  ///< {particle} pose minus truth
-  double effective = 0.0;              ///< effective sample size
+
+  /// Share of the weight of the particles for which `below(error)` holds.
+  template <class Below>
+  double share(const Below& below) const {
+    double found = 0.0, all = 0.0;
+    for (std::size_t i = 0; i < weight.size(); ++i) {
+      all += weight[i];
+      if (below(error[i])) found += weight[i];
+    }
+    return found / all;
+  }
+  double effective_size() const {
+    double all = 0.0, squares = 0.0;
+    for (const double one : weight) {
+      all += one;
+      squares += one * one;
+    }
+    return all * all / squares;
+  }
 };
 
-Cloud cloud_at(const RunRows& rows, std::size_t scan) {
+/// Every `step`-th particle from `first` on.
+Cloud cloud_at(const RunRows& rows, std::size_t scan, std::size_t first, std::size_t step) {
   const std::size_t M = rows.log_weight.size() / (rows.truth.size() / 3);
   Cloud cloud;
-  double all = 0.0, squares = 0.0;
-  for (std::size_t i = scan * M; i < (scan + 1) * M; ++i) {
+  for (std::size_t i = scan * M + first; i < (scan + 1) * M; i += step) {
     cloud.weight.push_back(std::exp(rows.log_weight[i]));
-    all += cloud.weight.back();
-    squares += cloud.weight.back() * cloud.weight.back();
     Eigen::Vector3d& error = cloud.error.emplace_back();
     for (std::size_t c = 0; c < 3; ++c)
       error(static_cast<Eigen::Index>(c)) =
           wrapped(c, rows.particle_pose[3 * i + c] - rows.truth[3 * scan + c]);
   }
-  cloud.effective = all * all / squares;
-  for (double& weight : cloud.weight) weight /= all;
   return cloud;
 }
 
-/// Smoothed rank of the truth, the weight of particles `below` it being given. E draws of equal
-/// weight leave E + 1 gaps of equal probability, and `within` spreads the truth evenly over its gap
-/// from run to run. For uneven weights E is the effective sample size.
+/// Smoothed rank of the truth; `below` is the share of the particles that are below it. E draws of
+/// equal weight leave E + 1 gaps of equal probability, and `within` spreads the truth evenly over
+/// its gap from run to run. For uneven weights E is the effective sample size.
 double smoothed_rank(double below, double E, double within) {
   return (below * E + within) / (E + 1.0);
 }
@@ -87,27 +101,30 @@ double smoothed_rank(double below, double E, double within) {
 RunPits::Components rank_pits(const Cloud& cloud, double within) {
   RunPits::Components pits;
   for (std::size_t c = 0; c < 3; ++c) {
-    double below = 0.0;
-    for (std::size_t i = 0; i < cloud.weight.size(); ++i) {
-      if (cloud.error[i](static_cast<Eigen::Index>(c)) < 0.0) below += cloud.weight[i];
-    }
-    pits[c] = smoothed_rank(below, cloud.effective, within);
+    const auto row = static_cast<Eigen::Index>(c);
+    const double below =
+        cloud.share([&](const Eigen::Vector3d& error) { return error(row) < 0.0; });
+    pits[c] = smoothed_rank(below, cloud.effective_size(), within);
   }
   return pits;
 }
 
-/// Rank of the squared distance of the truth among those of the particles, about the mean and by
-/// the covariance of particles and truth together, in which the truth is one more draw. NaN if that
-/// covariance is singular.
-double rank_of_distance(const Cloud& cloud, double within) {
-  const double E = cloud.effective, kept = E / (E + 1.0);
+/// Rank of the squared distance of the truth among those of `ranked`, from the mean and by the
+/// covariance of `others`, which so is no function of what is ranked. NaN for three effective
+/// particles or fewer, or if their covariance is singular.
+double rank_of_distance(const Cloud& others, const Cloud& ranked, double within) {
+  if (!(others.effective_size() > 3.0)) return kNaN;
+  double all = 0.0;
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (std::size_t i = 0; i < cloud.weight.size(); ++i)
-    mean += kept * cloud.weight[i] * cloud.error[i];
-  Eigen::Matrix3d P = mean * mean.transpose() / (E + 1.0);
-  for (std::size_t i = 0; i < cloud.weight.size(); ++i) {
-    const Eigen::Vector3d off = cloud.error[i] - mean;
-    P += kept * cloud.weight[i] * off * off.transpose();
+  for (std::size_t i = 0; i < others.weight.size(); ++i) {
+    all += others.weight[i];
+    mean += others.weight[i] * others.error[i];
+  }
+  mean /= all;
+  Eigen::Matrix3d P = Eigen::Matrix3d::Zero();
+  for (std::size_t i = 0; i < others.weight.size(); ++i) {
+    const Eigen::Vector3d off = others.error[i] - mean;
+    P += others.weight[i] * off * off.transpose();
   }
   const Eigen::LLT<Eigen::Matrix3d> L(P);
   if (L.info() != Eigen::Success) return kNaN;
@@ -115,11 +132,9 @@ double rank_of_distance(const Cloud& cloud, double within) {
     return L.matrixL().solve(error - mean).squaredNorm();
   };
   const double of_truth = distance(Eigen::Vector3d::Zero());
-  double nearer = 0.0;
-  for (std::size_t i = 0; i < cloud.weight.size(); ++i) {
-    if (distance(cloud.error[i]) < of_truth) nearer += cloud.weight[i];
-  }
-  return smoothed_rank(nearer, E, within);
+  const double nearer =
+      ranked.share([&](const Eigen::Vector3d& error) { return distance(error) < of_truth; });
+  return smoothed_rank(nearer, ranked.effective_size(), within);
 }
 
 /// Transforms of one landmark of the map, a different one from run to run.
@@ -163,10 +178,10 @@ RunPits pits_of(const RunRows& rows, std::size_t particles, std::uint64_t run,
     if (!pits.has_rank) continue;
     pits.rank[m].fill(kNaN);
     pits.rank_nees[m] = kNaN;
-    if (!is_drawn(rows, scans[m])) continue;  // each particle is a Gaussian still, not one pose
-    const Cloud cloud = cloud_at(rows, scans[m]);
-    pits.rank[m] = rank_pits(cloud, evenly(run));
-    pits.rank_nees[m] = rank_of_distance(cloud, evenly(run));
+    if (!is_drawn(rows, scans[m])) continue;  // each particle has a Gaussian of its own
+    pits.rank[m] = rank_pits(cloud_at(rows, scans[m], 0, 1), evenly(run));
+    pits.rank_nees[m] = rank_of_distance(cloud_at(rows, scans[m], 0, 2),
+                                         cloud_at(rows, scans[m], 1, 2), evenly(run));
   }
   if (pits.has_landmark) pits.landmark = landmark_pits(*rows.final_map, run, landmarks);
   return pits;

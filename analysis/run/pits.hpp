@@ -35,7 +35,7 @@ struct RunPits {
   std::array<Components, kQuarters> pose{};
   /// {quarter} transforms by the weighted particles, at scans that drew poses.
   std::array<Components, kQuarters> rank{};
-  /// {quarter} rank of the squared distance of the pose among those of the particles.
+  /// {quarter} rank of the squared distance of the truth among those of half of the particles.
   std::array<double, kQuarters> rank_nees{};
   std::array<double, 2> landmark{};  ///< x, y of one landmark of the final map
   /// {quarter} transforms of the leading NEES by its chi-square law.

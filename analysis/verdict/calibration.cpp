@@ -40,13 +40,13 @@ class PitJudge {
   std::map<std::size_t, EcdfBand> bands_;
 };
 
-/// The largest number of tests that a cell with or without stored particles can have, so that such
-/// cells with as many runs have the same band.
+/// The largest number of tests that a cell can have, so that cells with as many runs have the same
+/// band.
 std::size_t most_tests(const RunPits& run) {
   const bool has_components = run.has_pose || run.has_rank || run.has_landmark;
-  const std::size_t of_components = 2 * kQuarters * kComponents.size() + run.landmark.size();
-  return run.nees.size() + (has_components ? of_components : 0) +
-         (run.has_rank ? run.rank_nees.size() : 0);
+  const std::size_t of_components =
+      2 * kQuarters * kComponents.size() + run.rank_nees.size() + run.landmark.size();
+  return run.nees.size() + (has_components ? of_components : 0);
 }
 
 }  // namespace

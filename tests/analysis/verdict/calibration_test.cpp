@@ -154,17 +154,17 @@ Eigen::Vector3d on_ring(RngStream& draw, double width) {
   return {radius * std::cos(angle), radius * std::sin(angle), 0.01 * draw.normal()};
 }
 
-// The squared distance of the truth is among those of the particles, where the chi-square law would
-// find a fault; a truth off the ring is noticed.
+// The squared distance of the truth is among those of the particles, also with uneven weights; a
+// truth off the ring is noticed.
 TEST(CellCalibration, RanksTheDistanceOfTheTruthWhateverTheShape) {
   RngStream draw({.seed = 21});
   for (const double width_of_truth : {0.05, 0.3}) {
     CalibrationSums sums;
-    for (std::uint64_t run = 0; run < 400; ++run) {
-      constexpr std::size_t kParticles = 30;
+    for (std::uint64_t run = 0; run < 1000; ++run) {
+      constexpr std::size_t kParticles = 60;
       RunRows rows;
-      rows.log_weight.assign(kParticles, -std::log(30.0));
       for (std::size_t i = 0; i < kParticles; ++i) {
+        rows.log_weight.push_back(draw.normal());
         const Eigen::Vector3d pose = on_ring(draw, 0.05);
         rows.particle_pose.insert(rows.particle_pose.end(), pose.begin(), pose.end());
       }
@@ -176,6 +176,17 @@ TEST(CellCalibration, RanksTheDistanceOfTheTruthWhateverTheShape) {
     ASSERT_EQ(found.back().quantity, kNees);
     ASSERT_EQ(found.back().by, "particles");
     EXPECT_EQ(found.back().test.verdict == Calibration::calibrated, width_of_truth == 0.05);
+  }
+}
+
+TEST(CellCalibration, RanksNoDistanceByThreeParticlesOrFewer) {
+  RngStream draw({.seed = 6});
+  for (const std::size_t M : {2, 3, 6}) {
+    RunRows rows;
+    rows.truth.assign(3, 0.0);
+    add_cloud(M, 1.0, draw, rows);
+    EXPECT_TRUE(std::isnan(pits_of(rows, M, 0, {}).rank_nees.back())) << M;
+    EXPECT_FALSE(std::isnan(pits_of(rows, M, 0, {}).rank.back()[0])) << M;
   }
 }
 
