@@ -20,9 +20,9 @@ per line, as the .printed files have (printed.py):
 `compare` takes the answer from a column of a table of results/PAGE.md, for what printed.py has not
 compared: the first number of each cell with its 95 % interval, or with the standard error behind
 +-. The right side may be a number, FACTOR*LABEL, or LABEL@PAGE, a cell of another page. It is
-decided where the intervals do not overlap. `within` is confirmed if the number of a cell lies
-between two, or those of other cells, for columns without an interval; and `stated` if that in a
-sentence of the page does, which the paper rounds.
+decided where the intervals do not overlap. `within` is for columns without an interval: it is
+confirmed if the number of a cell lies between two others, each a number or a cell. `stated` is
+confirmed if a number in a sentence of the page lies between two that the paper rounds to its own.
 `settings` are what the paper prints, with the names of the study file; those of a cell begin with
 its label, and `runs` are those of the page. `open` is not measured yet, and `never` cannot be
 measured. `headline` is named in the first sentences if it is contradicted; its second word is the
@@ -56,7 +56,7 @@ ORDER = (CONTRADICTED, CONFIRMED, UNDECIDED, NOT_YET, NEVER)  # of the lines of 
 PUBLISH = ": publish the page again"  # it is older than the claim
 BAND_WITHIN = 0.01  # a printed band is right if its ends are off by less than this share
 OURS = printed.OURS
-NUMBER = re.compile(r"([0-9.]+(e-?[0-9]+)?|inf)$")  # else it is the label of a cell
+NUMBER = re.compile(r"([0-9]+(\.[0-9]+)?(e-?[0-9]+)?|inf)$")  # else it is the label of a cell
 
 
 # ---- Statements
@@ -379,7 +379,8 @@ class Ledger:
         number = page.bare_number(column, claim["left"])
         lower, upper = (float(end) if NUMBER.match(end) else page.bare_number(column, end)
                         for end in claim["ends"])
-        against = "" if NUMBER.match(least) else f" against {page.text_in(column, least)}"
+        others = [page.text_in(column, end) for end in claim["ends"] if not NUMBER.match(end)]
+        against = f" against {' and '.join(others)}" if others else ""
         name = f"{column}: {claim['left']} from {least} to {most}"
         return row_of(f"{claim['says']}; {name}", claim["where"],
                       page.text_in(column, claim["left"]) + against,

@@ -512,7 +512,7 @@ def how_sure(printed, measured, values):
                 f"by run, and intervals are at {LEVEL * 100:.0f} %")
     if printed["substitute"]:
         return (sentence + f"; {printed['substitute']} stands in place of the paper's world, so "
-                "that its numbers are not compared, only orders of filters.")
+                "that the paper's numbers are not compared with ours.")
     for value, (mean, _, verdict) in values:
         if value["cell"] == printed["baseline"] and verdict.startswith("not reproduced"):
             return (sentence + f"; but the {metric_in_words(value['metric'])} of {value['cell']} "

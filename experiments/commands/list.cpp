@@ -69,7 +69,9 @@ std::string fallback_text(const Setting& setting) {
                                     : value;
   };
   std::string text;
-  const auto kinds = std::ranges::count(setting.other_fallbacks, "kind", &OtherFallback::key);
+  const auto kinds = std::ranges::count_if(setting.other_fallbacks, [](const OtherFallback& other) {
+    return other.section == "scenario" && other.key == "kind";
+  });
   if (kinds < 2) text = in_words(setting.fallback.value_or(kRequired));
   for (const auto& [section, key, has, value] : setting.other_fallbacks) {
     text += formatted("{}{} if {}.{} = {}", text.empty() ? "" : "; ", in_words(value), section, key,

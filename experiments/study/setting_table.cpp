@@ -356,7 +356,8 @@ void add_record(const SectionOfTable& record) {
   Setting& rate = record.choice("rate", {"control", "scan"},
                                 "whether poses are stored at control steps or scans");
   set_for_log(rate, "scan");
-  rate.other_fallbacks.push_back({"record", "columns", "sums", "scan"});  // what is added up
+  rate.other_fallbacks.push_back(
+      {"record", "columns", "sums", "scan"});  // scans are what is added up
   record.count("map_rows", "0", 0, 100'000,
                "rows of the map's columns with unknown association. With 0 it is the number of "
                "landmarks of a simulated world, and most_landmarks for a recorded drive.");

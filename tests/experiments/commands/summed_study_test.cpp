@@ -83,8 +83,8 @@ class SlowSummedStudy : public BlinkProgram {
 
 TEST_F(SlowSummedStudy, SaysTheSameAsOneWithAllRows) {
   ASSERT_EQ(run("sums.h5").code, 0);
-  ASSERT_EQ(run("rows.h5", {"--set", "record.columns=pose,covariance,ancestry", "--set",
-                            "record.rate=scan"})
+  ASSERT_EQ(run("rows.h5",
+                {"--set", "record.columns=pose,covariance,ancestry", "--set", "record.rate=scan"})
                 .code,
             0);
   EXPECT_LT(std::filesystem::file_size(folder_ / "sums.h5"),
