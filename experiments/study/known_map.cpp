@@ -32,6 +32,7 @@ std::string reason_against_map(const std::string& filter) {
       {"dead_reckoning", "it uses no landmarks"},
       {"external", "the protocol of programs has no message for a map"},
       {"fixed_lag", "it begins at an exact first pose, without landmarks"},
+      {"equivariant", "it begins at an exact first pose, without landmarks"},
       {"smoother", "it estimates the whole path from an exact first pose"},
       {"relative", "its landmarks are relative to poses along the path, not to the world"},
       {"fej_ekf", "it is made for directions that no detection shows; a known map has none"},

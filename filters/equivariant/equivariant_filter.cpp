@@ -48,11 +48,8 @@ class PolarEquivariantFilter final : public SlamFilter {
       throw std::runtime_error("the log-likelihood of the scan is not finite");
     innovations_.add_to(context, report_, components_of(belief_.sensor).size());
     for (std::size_t k = 0; k < scan.size(); ++k) {
-      if (association_.pairings()[k].kind != PairingKind::fresh) continue;
-      if (!has_logarithm(scan[k])) {
-        ++report_.numerical_faults;
+      if (association_.pairings()[k].kind != PairingKind::fresh || !has_logarithm(scan[k]))
         continue;
-      }
       association_.add(scan[k].identity);
       gaussian_.append(vector_of(scan[k]));
     }
@@ -101,10 +98,8 @@ class PolarEquivariantFilter final : public SlamFilter {
   bool use(std::size_t k, const Detection& detection) {
     const std::size_t slot = association_.pairings()[k].landmark;
     const auto expected = gaussian_.expected(slot);
-    if (!expected || !has_logarithm(detection)) {
-      ++report_.numerical_faults;
-      return false;
-    }
+    if (!expected) ++report_.numerical_faults;
+    if (!expected || !has_logarithm(detection)) return false;
     const Eigen::Vector2d v = expected->innovation(vector_of(detection));
     const Eigen::Matrix2d S = expected->factor.covariance();
     const auto innovations = innovations_.of_block(0, 1.0);
