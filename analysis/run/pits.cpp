@@ -6,6 +6,7 @@
 #include "analysis/statistics/sampler_scale.hpp"
 #include "analysis/statistics/spread.hpp"
 #include "engine/numbers/angle.hpp"
+#include "engine/random/stream.hpp"
 
 #include <Eigen/Cholesky>
 
@@ -56,25 +57,6 @@ RunPits::Components drawn_pits(const RunRows& rows, const EffectiveDraws& draws,
 struct Cloud {
   std::vector<double> weight;          ///< {particle}
   std::vector<Eigen::Vector3d> error;  ///< {particle} pose minus truth
-
-  /// Share of the weight of the particles for which `below(error)` holds.
-  template <class Below>
-  double share(const Below& below) const {
-    double found = 0.0, all = 0.0;
-    for (std::size_t i = 0; i < weight.size(); ++i) {
-      all += weight[i];
-      if (below(error[i])) found += weight[i];
-    }
-    return found / all;
-  }
-  double effective_size() const {
-    double all = 0.0, squares = 0.0;
-    for (const double one : weight) {
-      all += one;
-      squares += one * one;
-    }
-    return all * all / squares;
-  }
 };
 
 /// Every `step`-th particle from `first` on.
@@ -91,35 +73,50 @@ Cloud cloud_at(const RunRows& rows, std::size_t scan, std::size_t first, std::si
   return cloud;
 }
 
-/// Smoothed rank of the truth; `below` is the share of the particles that are below it. E draws of
-/// equal weight leave E + 1 gaps of equal probability, and `within` spreads the truth evenly over
-/// its gap from run to run. For uneven weights E is the effective sample size.
-double smoothed_rank(double below, double E, double within) {
-  return (below * E + within) / (E + 1.0);
+/// Draws of equal weight out of weighted ones: a particle stays with the probability of its weight
+/// over the largest (rejection; von Neumann, NBS Applied Mathematics Series 12, 1951).
+std::vector<Eigen::Vector3d> equal_draws(const Cloud& cloud, RngStream& draw) {
+  std::vector<Eigen::Vector3d> kept;
+  double largest = 0.0;
+  for (const double weight : cloud.weight) largest = std::max(largest, weight);
+  for (std::size_t i = 0; i < cloud.weight.size(); ++i) {
+    if (draw.uniform() * largest < cloud.weight[i]) kept.push_back(cloud.error[i]);
+  }
+  return kept;
 }
 
-RunPits::Components rank_pits(const Cloud& cloud, double within) {
+/// Rank of the truth among draws of equal weight; NaN without any. N draws leave N + 1 gaps of
+/// equal probability, and `within` spreads the truth evenly over its gap from run to run.
+template <class Below>
+double rank_among(const std::vector<Eigen::Vector3d>& draws, double within, const Below& below) {
+  if (draws.empty()) return kNaN;
+  const auto found = static_cast<double>(std::ranges::count_if(draws, below));
+  return (found + within) / static_cast<double>(draws.size() + 1);
+}
+
+RunPits::Components rank_pits(const std::vector<Eigen::Vector3d>& draws, double within) {
   RunPits::Components pits;
   for (std::size_t c = 0; c < 3; ++c) {
     const auto row = static_cast<Eigen::Index>(c);
-    const double below =
-        cloud.share([&](const Eigen::Vector3d& error) { return error(row) < 0.0; });
-    pits[c] = smoothed_rank(below, cloud.effective_size(), within);
+    pits[c] =
+        rank_among(draws, within, [&](const Eigen::Vector3d& error) { return error(row) < 0.0; });
   }
   return pits;
 }
 
-/// Rank of the squared distance of the truth among those of `ranked`, from the mean and by the
+/// Rank of the squared distance of the truth among those of `draws`, from the mean and by the
 /// covariance of `others`, which so is no function of what is ranked. NaN for three effective
 /// particles or fewer, or if their covariance is singular.
-double rank_of_distance(const Cloud& others, const Cloud& ranked, double within) {
-  if (!(others.effective_size() > 3.0)) return kNaN;
-  double all = 0.0;
+double rank_of_distance(const Cloud& others, const std::vector<Eigen::Vector3d>& draws,
+                        double within) {
+  double all = 0.0, squares = 0.0;
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < others.weight.size(); ++i) {
     all += others.weight[i];
+    squares += others.weight[i] * others.weight[i];
     mean += others.weight[i] * others.error[i];
   }
+  if (!(all * all > 3.0 * squares)) return kNaN;
   mean /= all;
   Eigen::Matrix3d P = Eigen::Matrix3d::Zero();
   for (std::size_t i = 0; i < others.weight.size(); ++i) {
@@ -132,9 +129,28 @@ double rank_of_distance(const Cloud& others, const Cloud& ranked, double within)
     return L.matrixL().solve(error - mean).squaredNorm();
   };
   const double of_truth = distance(Eigen::Vector3d::Zero());
-  const double nearer =
-      ranked.share([&](const Eigen::Vector3d& error) { return distance(error) < of_truth; });
-  return smoothed_rank(nearer, ranked.effective_size(), within);
+  return rank_among(draws, within,
+                    [&](const Eigen::Vector3d& error) { return distance(error) < of_truth; });
+}
+
+/// A number in (0, 1) that is evenly spread over any stretch of runs: multiples of the golden
+/// ratio.
+double evenly(std::uint64_t run) {
+  const double golden = 0.6180339887498949 * (static_cast<double>(run) + 0.5);
+  return golden - std::floor(golden);
+}
+
+/// Ranks at the end of a quarter, whose last scan this is.
+void add_ranks(const RunRows& rows, std::size_t quarter, std::size_t scan, std::uint64_t run,
+               RunPits& pits) {
+  RngStream draw({.seed = 0,
+                  .run = run,
+                  .step = static_cast<std::uint32_t>(quarter),
+                  .purpose = Draw::analysis_thinning});
+  const double within = evenly(run);
+  pits.rank[quarter] = rank_pits(equal_draws(cloud_at(rows, scan, 0, 1), draw), within);
+  pits.rank_nees[quarter] = rank_of_distance(cloud_at(rows, scan, 0, 2),
+                                             equal_draws(cloud_at(rows, scan, 1, 2), draw), within);
 }
 
 /// Transforms of one landmark of the map, a different one from run to run.
@@ -149,13 +165,6 @@ std::array<double, 2> landmark_pits(const FinalMap& map, std::uint64_t run,
   const Eigen::Vector2d error = landmarks[l] - map.mean[l];
   return {gaussian_share(error.x(), map.covariance[l](0, 0)),
           gaussian_share(error.y(), map.covariance[l](1, 1))};
-}
-
-/// A number in (0, 1) that is evenly spread over any stretch of runs: multiples of the golden
-/// ratio.
-double evenly(std::uint64_t run) {
-  const double golden = 0.6180339887498949 * (static_cast<double>(run) + 0.5);
-  return golden - std::floor(golden);
 }
 
 }  // namespace
@@ -178,10 +187,8 @@ RunPits pits_of(const RunRows& rows, std::size_t particles, std::uint64_t run,
     if (!pits.has_rank) continue;
     pits.rank[m].fill(kNaN);
     pits.rank_nees[m] = kNaN;
-    if (!is_drawn(rows, scans[m])) continue;  // each particle has a Gaussian of its own
-    pits.rank[m] = rank_pits(cloud_at(rows, scans[m], 0, 1), evenly(run));
-    pits.rank_nees[m] = rank_of_distance(cloud_at(rows, scans[m], 0, 2),
-                                         cloud_at(rows, scans[m], 1, 2), evenly(run));
+    // Where no poses were drawn, each particle has a Gaussian of its own.
+    if (is_drawn(rows, scans[m])) add_ranks(rows, m, scans[m], run, pits);
   }
   if (pits.has_landmark) pits.landmark = landmark_pits(*rows.final_map, run, landmarks);
   return pits;

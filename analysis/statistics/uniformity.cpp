@@ -168,8 +168,8 @@ double p_value(const Uniformity& test) {
 }
 
 std::string in_words(Calibration verdict) {
-  constexpr std::array kWords = {"too few runs", "no fault found", "too narrow",
-                                 "too wide",     "shifted",        "wrong shape"};
+  constexpr std::array kWords = {"too few values", "no fault found", "too narrow",
+                                 "too wide",       "shifted",        "wrong shape"};
   return kWords.at(static_cast<std::size_t>(verdict));
 }
 

@@ -63,6 +63,7 @@ enum class Draw : std::uint8_t {
   external_filter = 28,  ///< seed of the generator of a program outside the process
   start_sample = 29,     ///< pose at the start, drawn from its prior, index = particle
   analysis_bootstrap = 32,
+  analysis_thinning = 33,  ///< which of the weighted particles stay as draws of equal weight
   test = 255,
 };
 

@@ -28,13 +28,6 @@ Eigen::Index first_stored(Eigen::Index column) {
   return column < 3 ? 0 : column - (column - 3) % 2;
 }
 
-/// The pose after `motion` from `origin`.
-Pose moved(const Pose& origin, const MotionIncrement& motion) {
-  const Eigen::Vector2d place =
-      place_of(origin) + rotation_by(origin.heading) * place_of(motion.pose());
-  return {place.x(), place.y(), wrap(origin.heading + motion.pose().heading)};
-}
-
 /// The error of the pose after a motion, by the error of the motion in the frame of `before`.
 Eigen::Matrix3d by_motion(const Pose& before, const Pose& after) {
   Eigen::Matrix3d derivative = Eigen::Matrix3d::Identity();
@@ -56,7 +49,7 @@ void PolarGaussian::start(const Pose& start) {
 void PolarGaussian::move(const MotionIncrement& motion) {
   const Eigen::Matrix3d C = symmetric(motion.covariance());
   const Pose before = pose_;
-  pose_ = moved(before, motion);
+  pose_ = motion.from(before).mean;
   const Eigen::Matrix3d N = by_motion(before, pose_);
   const Eigen::Vector2d way = place_of(motion.pose());
   const Eigen::Matrix2d back = rotation_by(-motion.pose().heading);
@@ -81,7 +74,8 @@ void PolarGaussian::move(const MotionIncrement& motion) {
 }
 
 PoseMoments PolarGaussian::pose_after(const MotionIncrement& motion) const {
-  const Pose after = moved(pose_, motion), in_map = moved(start_, MotionIncrement(after, {}));
+  const Pose after = motion.from(pose_).mean;
+  const Pose in_map = MotionIncrement(after, {}).from(start_).mean;
   const Eigen::Matrix3d N = by_motion(pose_, after);
   Eigen::Matrix3d L = Eigen::Matrix3d::Identity(), turn = L;
   L.topRightCorner<2, 1>() = quarter_turned(place_of(after));

@@ -154,17 +154,17 @@ Eigen::Vector3d on_ring(RngStream& draw, double width) {
   return {radius * std::cos(angle), radius * std::sin(angle), 0.01 * draw.normal()};
 }
 
-// The squared distance of the truth is among those of the particles, also with uneven weights; a
-// truth off the ring is noticed.
-TEST(CellCalibration, RanksTheDistanceOfTheTruthWhateverTheShape) {
+// Sums of weights in place of draws of equal weight deviate from the uniform law by 0.02 here,
+// which so many runs show. A truth off the ring is noticed.
+TEST(CellCalibration, RanksTheTruthWhateverTheShapeAndTheWeights) {
   RngStream draw({.seed = 21});
   for (const double width_of_truth : {0.05, 0.3}) {
     CalibrationSums sums;
-    for (std::uint64_t run = 0; run < 1000; ++run) {
+    for (std::uint64_t run = 0; run < 20000; ++run) {
       constexpr std::size_t kParticles = 60;
       RunRows rows;
       for (std::size_t i = 0; i < kParticles; ++i) {
-        rows.log_weight.push_back(draw.normal());
+        rows.log_weight.push_back(2.0 * draw.normal());
         const Eigen::Vector3d pose = on_ring(draw, 0.05);
         rows.particle_pose.insert(rows.particle_pose.end(), pose.begin(), pose.end());
       }
@@ -173,9 +173,13 @@ TEST(CellCalibration, RanksTheDistanceOfTheTruthWhateverTheShape) {
       sums.add(pits_of(rows, kParticles, run, {}));
     }
     const auto found = sums.result(std::vector<double>{1.0}, 0.95);
-    ASSERT_EQ(found.back().quantity, kNees);
-    ASSERT_EQ(found.back().by, "particles");
-    EXPECT_EQ(found.back().test.verdict == Calibration::calibrated, width_of_truth == 0.05);
+    ASSERT_EQ(found.size(), 16u);
+    for (const JudgedPits& one : found) {
+      if (width_of_truth > 0.05 && one.quantity != kNees) continue;
+      EXPECT_EQ(one.by, "particles");
+      EXPECT_EQ(one.test.verdict == Calibration::calibrated, width_of_truth == 0.05)
+          << one.quantity;
+    }
   }
 }
 
