@@ -226,7 +226,8 @@ def write_log(folder, start, odometry, scans, references, landmarks=(),
     """Writes a drive as the CSV log of experiments/RECORDED_DRIVES.md into a new or empty folder.
     `start` is (time, x, y, heading), `odometry` has rows (time, *controls), `scans` are (time,
     [detection, ...]), a detection has the components, `references` {name: rows (time, x, y) or
-    (time, x, y, heading)}; seconds, metres, radians."""
+    (time, x, y, heading), or the latter with their standard deviations}; seconds, metres,
+    radians."""
     check_new(folder)
     os.makedirs(folder, exist_ok=True)
     write_rows(os.path.join(folder, "start.csv"), "time_s,x_m,y_m,heading_rad", [start])
@@ -237,7 +238,8 @@ def write_log(folder, start, odometry, scans, references, landmarks=(),
         detections += [(time, *one) for one in seen] or [nothing]
     write_rows(os.path.join(folder, "detections.csv"), f"time_s,{components}", detections)
     for name, fixes in references.items():
-        header = "time_s,x_m,y_m,heading_rad" if len(fixes[0]) == 4 else "time_s,x_m,y_m"
+        columns = ("time_s,x_m,y_m", ",heading_rad", ",sigma_x_m,sigma_y_m,sigma_heading_rad")
+        header = "".join(columns[:{3: 1, 4: 2, 7: 3}[len(fixes[0])]])
         write_rows(os.path.join(folder, f"reference_{name}.csv"), header, fixes)
     if len(landmarks):
         write_rows(os.path.join(folder, "landmarks.csv"), "x_m,y_m", landmarks)

@@ -7,10 +7,12 @@
 
 FOLDER holds Barcodes.dat, Landmark_Groundtruth.dat and, of each robot, RobotN_Odometry.dat,
 RobotN_Measurement.dat and RobotN_Groundtruth.dat. The logs are mrclam_logs/robotN. Their reference
-is the motion capture, and their landmarks are the surveyed ones. Detections of other robots are
-left out and counted; detections of an unknown barcode become false alarms. See
-experiments/RECORDED_DRIVES.md.
+is the motion capture, and their landmarks are the surveyed ones. With --accuracy 0.003,0.01 it
+states that its positions have errors of 3 mm and its headings of 0.01 rad, so that a study judges
+the consistency of filters by it. Detections of other robots are left out and counted; detections of
+an unknown barcode become false alarms. See experiments/RECORDED_DRIVES.md.
 """
+import math
 import os
 import re
 
@@ -101,6 +103,14 @@ def robots_in(folder):
     return robots
 
 
+def deviations(text):
+    """(x, y, heading) standard deviations by the text METRES,RADIANS of an argument."""
+    position, heading = (float(number) for number in text.split(","))
+    if not (0 < position < math.inf and 0 < heading < math.inf):
+        raise ValueError
+    return position, position, heading
+
+
 def convert(arguments):
     landmarks, barcodes = landmarks_in(arguments.folder)
     drives = {os.path.join(arguments.output, f"robot{robot}"):
@@ -109,8 +119,10 @@ def convert(arguments):
     for folder in drives:
         conversion.check_new(folder)
     for folder, (odometry, detections, truth) in drives.items():
+        stated = np.tile(arguments.accuracy or (), (len(truth.numbers), 1))
         conversion.write_log(folder, truth.numbers[0], odometry.numbers,
-                             robot_log.scans_of(detections), {"motion_capture": truth.numbers},
+                             robot_log.scans_of(detections),
+                             {"motion_capture": np.hstack((truth.numbers, stated))},
                              landmarks, "speed_mps,yaw_rate_radps",
                              "range_m,bearing_rad,identity")
         robot_log.report(odometry, detections, truth)
@@ -120,5 +132,8 @@ def convert(arguments):
 if __name__ == "__main__":
     parser = conversion.parser_of(__doc__)
     parser.add_argument("folder", help="folder of one recording")
+    parser.add_argument("--accuracy", metavar="METRES,RADIANS", type=deviations,
+                        help="standard deviations of the positions and headings of the motion "
+                        "capture, such as 0.003,0.01")
     robot_log.add_options(parser)
     conversion.run(convert, parser.parse_args())

@@ -36,7 +36,7 @@ class Mrclam(Scripts):
         for robot in (1, 2):
             self.write_robot(robot)
         self.arguments = {"folder": self.path("set"), "output": self.path("logs"),
-                          "sort_within": robot_log.SORT_WITHIN}
+                          "sort_within": robot_log.SORT_WITHIN, "accuracy": None}
 
     def write_robot(self, robot):
         for kind, rows in (("Odometry", self.odometry), ("Groundtruth", self.truth),
@@ -56,6 +56,16 @@ class Mrclam(Scripts):
             found = path_of(start, self.numbers("logs", robot, "odometry.csv"), truth[:, 0])
             np.testing.assert_allclose(found, truth[:, 1:], rtol=0, atol=1e-6)
             self.assertGreater(np.ptp(truth[:, 1]), 0.9)
+
+    def test_states_how_accurate_the_motion_capture_is(self):
+        self.arguments["accuracy"] = mrclam.deviations("0.003,0.01")
+        self.converted(mrclam, **self.arguments)
+        with open(self.path("logs/robot1/reference_motion_capture.csv"), encoding="utf-8") as file:
+            self.assertEqual(file.readline(), "time_s,x_m,y_m,heading_rad,sigma_x_m,sigma_y_m,"
+                                              "sigma_heading_rad\n")
+            self.assertEqual(file.readline().split(",")[4:], ["0.003", "0.003", "0.01\n"])
+        for text in ("0.003", "0,1", "0.003,nan", "a,b", "0.003,0.01,1"):
+            self.assertRaises(ValueError, mrclam.deviations, text)
 
     def test_has_landmarks_in_the_order_of_their_subjects(self):
         printed = self.converted(mrclam, **self.arguments)

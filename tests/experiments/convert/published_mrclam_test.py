@@ -21,7 +21,7 @@ class PublishedRecording(Scripts):
         with tarfile.open(ARCHIVE) as archive:
             archive.extractall(self.folder)
         printed = self.converted(mrclam, folder=self.path("6"), output=self.path("logs"),
-                                 sort_within=robot_log.SORT_WITHIN)
+                                 sort_within=robot_log.SORT_WITHIN, accuracy=None)
         for line in ("5 drives with 15 landmarks", "Robot1_Odometry.dat: 61785 rows\n",
                      "Robot1_Measurement.dat: 1535 rows; 407 of other robots, left out; 1 of "
                      "unknown barcodes, kept as false alarms\n",
