@@ -21,12 +21,12 @@ per line, as the .printed files have (printed.py):
 compared: the first number of each cell with its 95 % interval, or with the standard error behind
 +-. The right side may be a number, FACTOR*LABEL, or LABEL@PAGE, a cell of another page. It is
 decided where the intervals do not overlap. `within` is for columns without an interval: it is
-confirmed if the number of a cell lies between two others, each a number or a cell. `stated` is
-confirmed if a number in a sentence of the page lies between two that the paper rounds to its own.
-`settings` are what the paper prints, with the names of the study file; those of a cell begin with
-its label, and `runs` are those of the page. `open` is not measured yet, and `never` cannot be
-measured. `headline` is named in the first sentences if it is contradicted; its second word is the
-name of a comparison in the tables.
+confirmed if the number of a cell lies between two others, each a number, a cell or FACTOR*LABEL.
+`stated` is confirmed if a number in a sentence of the page lies between two that the paper rounds
+to its own. `settings` are what the paper prints, with the names of the study file; those of a cell
+begin with its label, and `runs` are those of the page. `open` is not measured yet, and `never`
+cannot be measured. `headline` is named in the first sentences if it is contradicted; its second
+word is the name of a comparison in the tables.
 """
 import argparse
 import glob
@@ -377,9 +377,11 @@ class Ledger:
         page = self.page(claim["page"])
         column, (least, most) = claim["column"], claim["ends"]
         number = page.bare_number(column, claim["left"])
-        lower, upper = (float(end) if NUMBER.match(end) else page.bare_number(column, end)
-                        for end in claim["ends"])
-        others = [page.text_in(column, end) for end in claim["ends"] if not NUMBER.match(end)]
+        sides = [printed.RIGHT_SIDE.match(end) for end in claim["ends"] if not NUMBER.match(end)]
+        cells = {side[0]: float(side["factor"] or 1) * page.bare_number(column, side["label"])
+                 for side in sides}
+        lower, upper = (cells[end] if end in cells else float(end) for end in claim["ends"])
+        others = [page.text_in(column, side["label"]) for side in sides]
         against = f" against {' and '.join(others)}" if others else ""
         name = f"{column}: {claim['left']} from {least} to {most}"
         return row_of(f"{claim['says']}; {name}", claim["where"],
