@@ -168,7 +168,8 @@ class Claims(unittest.TestCase):
         line = 'within = "{}" a {} page=s where="6" says="many"\n'
         for ends, answer in (("9 10", "confirmed"), ("9.1 10", "contradicted"),
                              ("2 8.9", "contradicted"), ("two_m10 inf", "confirmed"),
-                             ("3 two_m10", "confirmed")):
+                             ("3 two_m10", "confirmed"), ("0 0.5*two_m10", "contradicted"),
+                             ("0 2*two_m10", "confirmed")):
             answers = self.answers(claims=("headline", line.format("ESS", ends) + "headline"))
             self.assertEqual(answers[f"many; ESS: a from {ends.replace(' ', ' to ')}"], answer)
         sweep = "| filter | ESS |\n|---|---:|\n| a | 3 |\n\n| cell | position"
