@@ -74,7 +74,8 @@ Cloud cloud_at(const RunRows& rows, std::size_t scan, std::size_t first, std::si
 }
 
 /// Draws of equal weight out of weighted ones: a particle stays with the probability of its weight
-/// over the largest (rejection; von Neumann, NBS Applied Mathematics Series 12, 1951).
+/// over the largest (rejection by the supremum of the sample; Caffo, Booth and Davis, Biometrika
+/// 89, 2002). Exact if weights do not depend on poses.
 std::vector<Eigen::Vector3d> equal_draws(const Cloud& cloud, RngStream& draw) {
   std::vector<Eigen::Vector3d> kept;
   double largest = 0.0;
