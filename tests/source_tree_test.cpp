@@ -383,6 +383,25 @@ TEST(SourceTree, EquationsHaveNumbersOfTheirOwn) {
               ElementsAre("1.2"));
 }
 
+TEST(SourceTree, SourcesCiteChaptersThatExist) {
+  static const std::regex heading(R"(## (\d+)\..*)"), cited(R"(\b(EQUATIONS|STATISTICS) (\d+))");
+  std::set<std::string> chapters;
+  for (const std::string path : {"filters/EQUATIONS", "analysis/STATISTICS"}) {
+    for (const std::string& line : read_lines(fs::path(MONTECARTA_SOURCE_DIR) / (path + ".md"))) {
+      std::smatch found;
+      if (std::regex_match(line, found, heading))
+        chapters.insert(path.substr(path.find('/') + 1) + " " + found.str(1));
+    }
+  }
+  const auto is_broken = [&](const std::string& line) {
+    const std::sregex_iterator begin(line.begin(), line.end(), cited), end;
+    return std::any_of(begin, end, [&](const auto& m) { return !chapters.contains(m.str()); });
+  };
+  EXPECT_THAT(faults(sources(), "cites a chapter that does not exist", is_broken), IsEmpty());
+  EXPECT_TRUE(is_broken(std::string("// STATISTICS ") + "99"));
+  EXPECT_FALSE(is_broken("// STATISTICS 5, EQUATIONS 20"));
+}
+
 TEST(SourceTree, DocumentsLinkToFilesThatExist) {
   const fs::path root = MONTECARTA_SOURCE_DIR;
   std::size_t links = 0;
