@@ -4,6 +4,7 @@
 #include "analysis/study/cell_report.hpp"
 #include "analysis/study/efficiency.hpp"
 #include "analysis/study/map_error_sums.hpp"
+#include "engine/text/list_text.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -78,7 +79,7 @@ std::map<std::string, std::string> cells_without_map_errors(const StudyAnalysis&
   for (const CellAnalysis& cell : study.cells) {
     if (cell.get<MapErrors>().missing.empty()) continue;
     std::string& labels = cells[cell.get<MapErrors>().missing];
-    labels += (labels.empty() ? "" : ", ") + cell.label;
+    append_part(labels, cell.label);
   }
   return cells;
 }

@@ -4,6 +4,7 @@
 #include "analysis/study/cell_report.hpp"
 #include "analysis/study/reference_sums.hpp"
 #include "analysis/study/verdict_table.hpp"
+#include "engine/text/list_text.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -151,8 +152,10 @@ std::string drives_in_words(const StudyAnalysis& study, const JudgedReference& r
 std::string fixes_text(const StudyAnalysis& study) {
   std::string text;
   for (const JudgedReference& reference : study.references) {
-    text += (text.empty() ? "" : "; ") + reference.name + " has " +
-            std::to_string(reference.fixes) + " fixes within " + drives_in_words(study, reference);
+    append_part(text,
+                reference.name + " has " + std::to_string(reference.fixes) + " fixes within " +
+                    drives_in_words(study, reference),
+                "; ");
     if (reference.in_gaps > 0) text += ", " + std::to_string(reference.in_gaps) + " in gaps";
     if (reference.outside > 0)
       text += ", " + std::to_string(reference.outside) + " before or after the stored poses";

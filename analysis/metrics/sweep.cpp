@@ -4,6 +4,7 @@
 
 #include "analysis/study/cell_report.hpp"
 #include "analysis/study/verdict_table.hpp"
+#include "engine/text/list_text.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -207,8 +208,9 @@ std::vector<Section> sweep_sections(const StudyAnalysis& study) {
   if (sweeps.empty()) return {};
   std::string options;
   for (const Sweep& sweep : sweeps) {
-    options += (options.empty() ? "" : "; ") + sweep.option + " from " + sweep.values.front() +
-               " to " + sweep.values.back();
+    append_part(options,
+                sweep.option + " from " + sweep.values.front() + " to " + sweep.values.back(),
+                "; ");
   }
   Section section = section_of("sweep", {{"options", options}});
   for (const Sweep& sweep : sweeps) section.add(name_of_sweep(sweep), sweep_table(study, sweep));

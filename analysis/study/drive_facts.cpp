@@ -6,6 +6,7 @@
 #include "analysis/study/reference_sums.hpp"
 #include "analysis/verdict/drive_verdict.hpp"
 #include "analysis/verdict/innovations.hpp"
+#include "engine/text/list_text.hpp"
 #include "engine/text/number_text.hpp"
 
 #include <algorithm>
@@ -36,7 +37,7 @@ void add_cells_without_innovation(const StudyAnalysis& study, std::vector<std::s
     const std::vector<double> landmarks = cell.scores.column("map_landmarks");
     const bool is_empty = std::ranges::count(landmarks, 0.0) > 0;
     if (!has_map(cell) || is_empty || cell.find<Innovations>() != nullptr) continue;
-    cells += (cells.empty() ? "" : ", ") + cell.label;
+    append_part(cells, cell.label);
   }
   if (!cells.empty()) add("no innovation", {{"cells", cells}}, facts);
 }

@@ -9,6 +9,7 @@
 #include "analysis/verdict/convention_hints.hpp"
 #include "analysis/verdict/gate_scale.hpp"
 #include "analysis/verdict/sentence.hpp"
+#include "engine/text/list_text.hpp"
 #include "engine/text/number_text.hpp"
 
 #include <algorithm>
@@ -41,8 +42,7 @@ std::vector<std::string> notes_on_innovations(const StudyAnalysis& study) {
   std::string gates;
   for (const CellAnalysis& cell : study.cells) {
     if (cell.find<GateScale>() == nullptr) continue;
-    gates +=
-        (gates.empty() ? "" : ", ") + cell.label + " (" + setting_of(cell.settings, "gate") + ")";
+    append_part(gates, cell.label + " (" + setting_of(cell.settings, "gate") + ")");
   }
   if (!gates.empty()) notes.push_back(prose("innovations", "gate", {{"gates", gates}}));
   return notes;
@@ -53,7 +53,7 @@ std::string cells_of(const StudyAnalysis& study, bool are_bounded) {
   std::string cells;
   for (const CellAnalysis& cell : study.cells) {
     if (has_bounds(cell.settings) != are_bounded) continue;
-    cells += (cells.empty() ? "" : ", ") + cell.label;
+    append_part(cells, cell.label);
   }
   return cells;
 }
@@ -105,9 +105,7 @@ std::vector<std::string> notes_on_blocks(const StudyAnalysis& study) {
 }  // namespace
 
 std::string components_text(const StudyAnalysis& study) {
-  std::string all;
-  for (const std::string& name : study.imported.components) all += (all.empty() ? "" : ", ") + name;
-  return all;
+  return joined(study.imported.components);
 }
 
 std::vector<std::string> imported_notes(const StudyAnalysis& study) {

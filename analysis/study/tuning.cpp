@@ -4,6 +4,7 @@
 #include "analysis/statistics/spread.hpp"
 #include "analysis/study/prose.hpp"
 #include "engine/formatted.hpp"
+#include "engine/text/list_text.hpp"
 #include "engine/text/number_text.hpp"
 
 #include <algorithm>
@@ -63,7 +64,7 @@ template <class Condition>
 std::string noises_for_which(const TunedNoise& noise, const Condition& holds) {
   std::string names;
   if (holds(noise.motion)) names = "motion";
-  if (holds(noise.sensor)) names += (names.empty() ? "" : " and ") + std::string("sensor");
+  if (holds(noise.sensor)) append_part(names, "sensor", " and ");
   return names;
 }
 

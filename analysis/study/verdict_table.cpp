@@ -14,6 +14,7 @@
 #include "analysis/verdict/gate_scale.hpp"
 #include "analysis/verdict/sentence.hpp"
 #include "engine/numbers/angle.hpp"
+#include "engine/text/list_text.hpp"
 #include "engine/text/number_text.hpp"
 
 #include <algorithm>
@@ -296,7 +297,7 @@ std::vector<std::string> cautions(std::span<const CellAnalysis> cells,
   constexpr double kLeastShare = 0.01;
   std::string runs, draws, singular, twice;
   const auto list = [](std::string& text, const CellAnalysis& cell, const std::string& count) {
-    text += (text.empty() ? "" : ", ") + cell.label + " " + count;
+    append_part(text, cell.label + " " + count);
   };
   for (const CellAnalysis& cell : cells) {
     const NeesResult* pose = cell.find_nees(ErrorBlock::pose, cell.leading);

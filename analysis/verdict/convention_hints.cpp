@@ -2,6 +2,7 @@
 #include "analysis/verdict/convention_hints.hpp"
 
 #include "analysis/run/nees.hpp"
+#include "engine/text/list_text.hpp"
 #include "engine/text/number_text.hpp"
 
 #include <algorithm>
@@ -13,12 +14,6 @@ namespace {
 /// Returns whether no family rejects that the errors are consistent.
 bool fits_errors(const Verdict& found) {
   return std::ranges::none_of(found.families, &FamilyTest::is_rejected);
-}
-
-std::string comma_joined(const std::vector<std::string>& parts) {
-  std::string all;
-  for (const std::string& part : parts) all += (all.empty() ? "" : ", ") + part;
-  return all;
 }
 
 /// {scan} NEES of errors whose covariances are corrected.
@@ -46,7 +41,7 @@ std::string mistakes_in_words(const ConventionHint& hint) {
     fitting.push_back(with_ratio(name_of(kTestedMistakes[k]), found));
   }
   if (fitting.empty()) return in_words(hint.mistakes);
-  return "The covariances may be written with " + comma_joined(fitting) +
+  return "The covariances may be written with " + joined(fitting) +
          ", by which they would not have been rejected";
 }
 
@@ -69,7 +64,7 @@ std::string far_nearer_in_words(const ConventionHint& hint, const std::string& s
   if (nearer.empty()) return "";
   return "; far nearer to 1 than the ratio " +
          compact(hint.by_convention[stated].ratio_estimate()) + " of " + said + " is that of " +
-         comma_joined(nearer);
+         joined(nearer);
 }
 
 }  // namespace
@@ -135,10 +130,10 @@ std::string in_words(const ConventionHint& hint, const std::string& cell, const 
   if (fitting.empty()) {
     words += "Every other would have been rejected";
     words += said_fits ? ": " : " as well: ";
-    words += comma_joined(others);
+    words += joined(others);
   } else {
-    words += "The same covariances would pass as " + comma_joined(fitting);
-    if (!others.empty()) words += ", and be rejected as " + comma_joined(others);
+    words += "The same covariances would pass as " + joined(fitting);
+    if (!others.empty()) words += ", and be rejected as " + joined(others);
     words += said_fits ? ": this study cannot tell those that pass apart"
                        : ": are they of another error than was said? If not, they pass by chance";
   }

@@ -4,6 +4,7 @@
 
 #include "analysis/statistics/interval.hpp"
 #include "analysis/verdict/verdict.hpp"
+#include "engine/text/list_text.hpp"
 #include "engine/text/number_text.hpp"
 
 #include <algorithm>
@@ -257,7 +258,7 @@ std::vector<std::string> means_words(const Verdict& verdict) {
 std::string joined(const std::vector<std::string>& phrases) {
   std::string text;
   for (const std::string& phrase : phrases) {
-    if (!phrase.empty()) text += (text.empty() ? "" : "; ") + phrase;
+    if (!phrase.empty()) append_part(text, phrase, "; ");
   }
   return text;
 }
@@ -328,8 +329,7 @@ std::string also_words(const Verdict& verdict) {
   std::string names;
   for (const auto& [name, families] : kFindings) {
     const auto is_found = [&](Family family) { return is_rejected(verdict, family); };
-    if (std::ranges::any_of(families, is_found))
-      names += (names.empty() ? "" : ", ") + std::string(name);
+    if (std::ranges::any_of(families, is_found)) append_part(names, name);
   }
   return names;
 }
@@ -369,8 +369,7 @@ std::string exceptions_of(const Verdict& found) {
   std::string words;
   const auto add = [&](std::uint64_t count, std::uint64_t of, const std::string& what) {
     if (count == 0) return;
-    words +=
-        (words.empty() ? "" : ", ") + std::to_string(count) + " of " + std::to_string(of) + what;
+    append_part(words, std::to_string(count) + " of " + std::to_string(of) + what);
   };
   const auto samples = [](std::uint64_t count) {
     return count == 1 ? " samples is " : " samples are ";

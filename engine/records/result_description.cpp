@@ -6,6 +6,7 @@
 #include "engine/records/fingerprint.hpp"
 #include "engine/records/result_format.hpp"
 #include "engine/records/run_record.hpp"
+#include "engine/text/list_text.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -139,7 +140,7 @@ std::optional<std::string> fact(const TextPairs& build, const std::string& name)
   std::istringstream words(found->second);
   std::string rest;
   for (std::string word; words >> word;) {
-    if (!word.starts_with("-march=")) rest += (rest.empty() ? "" : " ") + word;
+    if (!word.starts_with("-march=")) append_part(rest, word, " ");
   }
   return rest;
 }

@@ -5,6 +5,7 @@
 #include "engine/records/result_format.hpp"
 #include "engine/records/run_record.hpp"
 #include "engine/records/structure.hpp"
+#include "engine/text/list_text.hpp"
 
 #include <algorithm>
 #include <array>
@@ -46,12 +47,10 @@ void put_label(const h5::Handle& dataset, const Label& label) {
 /// Attaches scales and stores the names of the axes, slowest first, for readers that reverse axes.
 void put_dimensions(const h5::Handle& dataset, const std::vector<std::string>& dimensions,
                     const Scales& scales) {
-  std::string order;
   for (unsigned axis = 0; axis < dimensions.size(); ++axis) {
     h5::attach_scale(dataset, scales.at(dimensions[axis]), axis);
-    order += (axis == 0 ? "" : ", ") + dimensions[axis];
   }
-  h5::put_text(dataset, "dimension_order", order);
+  h5::put_text(dataset, "dimension_order", joined(dimensions));
 }
 
 /// Adds a dataset with its label. The scales of its dimensions must exist.

@@ -3,6 +3,7 @@
 
 #include "engine/errors.hpp"
 #include "engine/formatted.hpp"
+#include "engine/text/list_text.hpp"
 
 #include <algorithm>
 #include <span>
@@ -166,16 +167,15 @@ void copy_truth(const PosixFile& from, const ResultSlabs& source, const PosixFil
 
 void refuse_gaps(const std::vector<std::string>& gaps, std::uint64_t missing, std::uint64_t runs,
                  const std::filesystem::path& shard) {
-  std::string named, commands;
-  for (std::size_t i = 0; i < gaps.size(); ++i) {
-    named += (i == 0 ? "" : ", ") + gaps[i];
-    if (i < 3)
-      commands += formatted("\n  montecarta run study.ini -o missing_{}.h5 --runs {}", i, gaps[i]);
+  constexpr std::size_t kShown = 3;
+  std::string commands;
+  for (std::size_t i = 0; i < std::min(gaps.size(), kShown); ++i) {
+    commands += formatted("\n  montecarta run study.ini -o missing_{}.h5 --runs {}", i, gaps[i]);
   }
   throw StudyError(
       "merge: runs {} are in none of the shards ({} of {} missing; nothing was written): compute "
       "them, then merge again:\n  montecarta info {} --text > study.ini{}{}",
-      named, missing, runs, shard, commands, gaps.size() > 3 ? "\n  ..." : "");
+      joined(gaps), missing, runs, shard, commands, gaps.size() > kShown ? "\n  ..." : "");
 }
 
 }  // namespace montecarta::engine

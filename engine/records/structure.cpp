@@ -5,6 +5,7 @@
 #include "engine/formatted.hpp"
 #include "engine/records/fingerprint.hpp"
 #include "engine/records/result_format.hpp"
+#include "engine/text/list_text.hpp"
 #include "engine/text/visible_text.hpp"
 
 #include <algorithm>
@@ -53,7 +54,7 @@ bool has_fixed_contents(const std::string& name) {
 std::string kind_of(const h5::Handle& dataset) {
   std::string axes;
   for (const auto length : h5::shape(dataset)) {
-    axes += (axes.empty() ? "" : ", ") + std::to_string(length);
+    append_part(axes, std::to_string(length));
   }
   return formatted("{} {{{}}}", h5::type_name(dataset), axes);
 }

@@ -8,6 +8,7 @@
 #include "engine/errors.hpp"
 #include "engine/formatted.hpp"
 #include "engine/records/fingerprint.hpp"
+#include "engine/text/list_text.hpp"
 #include "experiments/benchmark/benchmark_study.hpp"
 #include "experiments/external/external_filter.hpp"
 #include "experiments/files/files.hpp"

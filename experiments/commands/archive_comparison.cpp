@@ -8,6 +8,7 @@
 #include "analysis/study/study_comparison.hpp"
 #include "engine/errors.hpp"
 #include "engine/formatted.hpp"
+#include "engine/text/list_text.hpp"
 #include "engine/text/wrapped_text.hpp"
 #include "experiments/benchmark/archive_entry.hpp"
 #include "experiments/benchmark/benchmark_study.hpp"

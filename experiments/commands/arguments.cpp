@@ -4,6 +4,7 @@
 #include "engine/errors.hpp"
 #include "engine/formatted.hpp"
 #include "engine/records/provenance.hpp"
+#include "engine/text/list_text.hpp"
 #include "engine/text/visible_text.hpp"
 #include "engine/text/wrapped_text.hpp"
 #include "engine/threads/thread_budget.hpp"

@@ -5,6 +5,7 @@
 #include "engine/records/posix_file.hpp"
 #include "engine/records/result_file.hpp"
 #include "engine/runs/monte_carlo.hpp"
+#include "engine/text/list_text.hpp"
 #include "engine/text/number_text.hpp"
 #include "engine/text/wrapped_text.hpp"
 #include "experiments/benchmark/archive_entry.hpp"

@@ -11,6 +11,7 @@
 #include "engine/records/run_record.hpp"
 #include "engine/runs/step.hpp"
 #include "engine/runs/worker.hpp"
+#include "engine/text/list_text.hpp"
 #include "engine/text/number_text.hpp"
 #include "engine/text/wrapped_text.hpp"
 #include "experiments/commands/arguments.hpp"

@@ -6,6 +6,7 @@
 #include "engine/core/judgement.hpp"
 #include "engine/errors.hpp"
 #include "engine/formatted.hpp"
+#include "engine/text/list_text.hpp"
 #include "engine/text/wrapped_text.hpp"
 #include "experiments/commands/archive_comparison.hpp"
 #include "experiments/commands/arguments.hpp"

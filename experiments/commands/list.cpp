@@ -3,6 +3,7 @@
 #include "engine/errors.hpp"
 #include "engine/formatted.hpp"
 #include "engine/records/columns.hpp"
+#include "engine/text/list_text.hpp"
 #include "engine/text/wrapped_text.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/files/files.hpp"

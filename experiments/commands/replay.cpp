@@ -4,6 +4,7 @@
 #include "engine/records/posix_file.hpp"
 #include "engine/runs/monte_carlo.hpp"
 #include "engine/runs/recompute.hpp"
+#include "engine/text/list_text.hpp"
 #include "engine/text/wrapped_text.hpp"
 #include "experiments/commands/arguments.hpp"
 #include "experiments/commands/commands.hpp"

@@ -4,6 +4,7 @@
 #include "engine/formatted.hpp"
 #include "engine/records/result_layout.hpp"
 #include "engine/records/sum_groups.hpp"
+#include "engine/text/list_text.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/stored_result.hpp"
 #include "experiments/commands/summed_study.hpp"

@@ -10,6 +10,7 @@
 #include "engine/records/provenance.hpp"
 #include "engine/records/result_description.hpp"
 #include "engine/records/sum_groups.hpp"
+#include "engine/text/list_text.hpp"
 #include "engine/text/visible_text.hpp"
 #include "engine/text/wrapped_text.hpp"
 #include "experiments/judging/imported_plan.hpp"

@@ -3,6 +3,7 @@
 
 #include "engine/errors.hpp"
 #include "engine/formatted.hpp"
+#include "engine/text/list_text.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>

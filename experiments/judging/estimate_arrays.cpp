@@ -5,6 +5,7 @@
 #include "engine/formatted.hpp"
 #include "engine/records/fingerprint.hpp"
 #include "engine/records/result_format.hpp"
+#include "engine/text/list_text.hpp"
 #include "engine/text/visible_text.hpp"
 #include "experiments/files/files.hpp"
 #include "experiments/judging/run_files.hpp"

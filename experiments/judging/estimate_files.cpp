@@ -3,6 +3,7 @@
 
 #include "engine/errors.hpp"
 #include "engine/records/fingerprint.hpp"
+#include "engine/text/list_text.hpp"
 #include "experiments/files/files.hpp"
 #include "experiments/judging/innovation_rows.hpp"
 #include "experiments/judging/read_rows.hpp"

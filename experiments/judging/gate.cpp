@@ -3,6 +3,7 @@
 
 #include "analysis/statistics/distributions.hpp"
 #include "engine/errors.hpp"
+#include "engine/text/list_text.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>

@@ -3,6 +3,7 @@
 
 #include "analysis/run/nees.hpp"
 #include "engine/formatted.hpp"
+#include "engine/text/list_text.hpp"
 #include "engine/text/number_text.hpp"
 #include "experiments/judging/angle_units.hpp"
 #include "experiments/judging/time_units.hpp"

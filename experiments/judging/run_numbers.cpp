@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/judging/run_numbers.hpp"
 
+#include "engine/text/list_text.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>
@@ -229,7 +230,7 @@ std::vector<std::string> rest_of(const ParsedPath& path, const std::vector<std::
 
 std::string to_text(const RunKey& key) {
   std::string text;
-  for (const std::uint64_t number : key) text += (text.empty() ? "" : "/") + std::to_string(number);
+  for (const std::uint64_t number : key) append_part(text, std::to_string(number), "/");
   return text;
 }
 

@@ -4,6 +4,7 @@
 #include "analysis/run/nees.hpp"
 #include "engine/errors.hpp"
 #include "engine/formatted.hpp"
+#include "engine/text/list_text.hpp"
 #include "experiments/judging/column_names.hpp"
 #include "experiments/judging/covariance_columns.hpp"
 #include "experiments/text/words.hpp"

@@ -4,6 +4,7 @@
 #include "engine/errors.hpp"
 #include "engine/formatted.hpp"
 #include "engine/records/fingerprint.hpp"
+#include "engine/text/list_text.hpp"
 #include "experiments/recordings/log_csv.hpp"
 #include "experiments/text/words.hpp"
 

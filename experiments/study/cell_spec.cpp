@@ -3,6 +3,7 @@
 
 #include "engine/errors.hpp"
 #include "engine/formatted.hpp"
+#include "engine/text/list_text.hpp"
 #include "experiments/study/vehicle_and_sensor.hpp"
 #include "experiments/text/words.hpp"
 
@@ -169,10 +170,9 @@ void describe(const std::vector<CellSpec>& cells, const CellSpec& cell, std::str
     const bool is_mismatch = i >= cell.filter->options.size(), particles = key == "particles";
     if (!is_mismatch && !particles && !distinguishes(cells, cell, i)) continue;
     label += particles ? "_m" + value : formatted("_{}_{}", key, label_part(value));
-    distinction +=
-        (distinction.empty() ? "" : ", ") + (is_mismatch ? formatted("believes {} x {}", key, value)
-                                             : particles ? value + " particles"
-                                                         : formatted("{} {}", key, value));
+    append_part(distinction, is_mismatch ? formatted("believes {} x {}", key, value)
+                             : particles ? value + " particles"
+                                         : formatted("{} {}", key, value));
   }
 }
 

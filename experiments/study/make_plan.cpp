@@ -5,6 +5,7 @@
 #include "engine/formatted.hpp"
 #include "engine/random/stream.hpp"
 #include "engine/records/columns.hpp"
+#include "engine/text/list_text.hpp"
 #include "experiments/study/enough_runs.hpp"
 #include "experiments/study/fixes.hpp"
 #include "experiments/study/known_map.hpp"

@@ -3,6 +3,7 @@
 
 #include "engine/errors.hpp"
 #include "engine/formatted.hpp"
+#include "engine/text/list_text.hpp"
 #include "experiments/recordings/log_csv.hpp"
 #include "experiments/recordings/recorded_drive.hpp"
 #include "experiments/text/words.hpp"

@@ -4,6 +4,7 @@
 #include "engine/core/judgement.hpp"
 #include "engine/formatted.hpp"
 #include "engine/records/columns.hpp"
+#include "engine/text/list_text.hpp"
 #include "engine/text/wrapped_text.hpp"
 #include "experiments/text/words.hpp"
 #include "filters/models/sensor.hpp"

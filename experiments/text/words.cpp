@@ -3,6 +3,7 @@
 
 #include "engine/errors.hpp"
 #include "engine/formatted.hpp"
+#include "engine/text/list_text.hpp"
 
 #include <algorithm>
 #include <array>
@@ -61,15 +62,6 @@ void split_into(std::string_view text, char separator, std::vector<std::string_v
     parts.push_back(trimmed(text.substr(begin, end - begin)));
     begin = end + 1;
   }
-}
-
-std::string joined(std::span<const std::string> parts, std::string_view between) {
-  std::string text;
-  for (const std::string& part : parts) {
-    if (&part != parts.data()) text += between;
-    text += part;
-  }
-  return text;
 }
 
 std::string excerpt(std::string_view text) {

@@ -19,8 +19,6 @@ std::string_view trimmed(std::string_view text);
 std::vector<std::string> split(std::string_view text, char separator);
 /// Stores the parts that split() returns in `parts`, as views of `text`.
 void split_into(std::string_view text, char separator, std::vector<std::string_view>& parts);
-/// Joins texts: "a, b, c".
-std::string joined(std::span<const std::string> parts, std::string_view between = ", ");
 /// Text of `text` in errors: its first 40 bytes, with ? for bytes that cannot be printed.
 std::string excerpt(std::string_view text);
 

@@ -2,6 +2,7 @@
 #include "experiments/tuning/noise_factors.hpp"
 
 #include "engine/formatted.hpp"
+#include "engine/text/list_text.hpp"
 #include "engine/text/number_text.hpp"
 #include "experiments/text/words.hpp"
 
@@ -28,7 +29,7 @@ CellSpec with_noise(CellSpec cell, const NoiseFactors& factors, const std::strin
     multiply_option(option, option.key == "motion_noise" ? factors.motion : factors.sensor, cell);
   if (label == cell.label) return cell;
   cell.label = label;
-  cell.distinction += (cell.distinction.empty() ? "" : ", ") + std::string("other noise");
+  append_part(cell.distinction, "other noise");
   return cell;
 }
 

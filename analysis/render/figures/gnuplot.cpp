@@ -3,6 +3,7 @@
 
 #include "analysis/study/strips.hpp"
 #include "engine/errors.hpp"
+#include "engine/text/list_text.hpp"
 #include "engine/text/number_text.hpp"
 #include "engine/text/shell_command.hpp"
 #include "engine/text/visible_text.hpp"
@@ -120,11 +121,9 @@ void run_gnuplot(const std::filesystem::path& directory, const std::vector<std::
                      "install gnuplot-nox'");
   }
   if (outcome.has_succeeded()) return;
-  std::string all;
-  for (const std::string& name : scripts) all += (all.empty() ? "" : ", ") + name;
   throw RunError(
       "{}: gnuplot failed at {} ({}): draw them again by gnuplot, and look at what it says",
-      directory, all, outcome.last_line());
+      directory, joined(scripts), outcome.last_line());
 }
 
 std::string gnuplot_quoted(const std::string& text) {
@@ -232,8 +231,7 @@ class PanelWriter {
   void plot(const Columns& columns, const std::string& which, const std::string& how) {
     const std::string name = prefix_ + std::to_string(count_++);
     numbers_ += block(name, columns);
-    commands_ += (commands_.empty() ? "" : ", \\\n  ") + name + " using " + which + " with " + how +
-                 " notitle";
+    append_part(commands_, name + " using " + which + " with " + how + " notitle", ", \\\n  ");
   }
 
   /// Adds ellipses, enlarged where they are too small to be seen.

@@ -8,6 +8,7 @@
 #include "analysis/study/verdict_table.hpp"
 #include "analysis/verdict/sentence.hpp"
 #include "engine/records/h5.hpp"
+#include "engine/text/list_text.hpp"
 
 namespace montecarta::analysis {
 namespace {
@@ -77,7 +78,7 @@ void write_families(const h5::Handle& cell_group, const Verdict& verdict) {
     const auto group = h5::create_group(families, key_of(test.family));
     std::string names;
     for (const Member& member : test.members) {
-      if (!member.name.empty()) names += (names.empty() ? "" : "\n") + member.name;
+      if (!member.name.empty()) append_part(names, member.name, "\n");
     }
     if (!names.empty()) h5::put_text(group, "members", names);
     write_columns(group, family_frame(test).columns, nullptr);

@@ -11,6 +11,7 @@
 #include "analysis/study/verdict_table.hpp"
 #include "engine/errors.hpp"
 #include "engine/formatted.hpp"
+#include "engine/text/list_text.hpp"
 #include "engine/text/wrapped_text.hpp"
 
 #include <algorithm>
@@ -140,7 +141,7 @@ void print_named(std::ostream& out, const StudyAnalysis& study, const std::strin
   std::string known;
   for (const Section& section : sections_of(study)) {
     for (const auto& table : section.all<Section::Table>()) {
-      known += (known.empty() ? "" : ", ") + table.name;
+      append_part(known, table.name);
       if (table.name != name) continue;
       print_table(out, table.table, width);
       for (const auto& note : section.all<Section::Note>()) {

@@ -5,6 +5,7 @@
 #include "analysis/study/study_analysis.hpp"
 #include "engine/random/stream.hpp"
 #include "engine/records/result_file.hpp"
+#include "engine/text/list_text.hpp"
 #include "experiments/text/words.hpp"
 #include "tests/doubles/matchers.hpp"
 #include "tests/experiments/commands/program.hpp"
@@ -20,7 +21,7 @@ const std::string kHeader =
 
 std::string row_of(std::span<const double> numbers) {
   std::string row;
-  for (const double number : numbers) row += (row.empty() ? "" : ",") + to_text(number);
+  for (const double number : numbers) append_part(row, to_text(number), ",");
   return row + "\n";
 }
 

@@ -5,6 +5,7 @@
 #include "analysis/verdict/convention_hints.hpp"
 #include "engine/numbers/angle.hpp"
 #include "engine/random/stream.hpp"
+#include "engine/text/list_text.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/text/words.hpp"
 #include "tests/analysis/verdict_studies.hpp"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/judging/likely_mistakes.hpp"
 
+#include "engine/text/list_text.hpp"
 #include "experiments/text/words.hpp"
 #include "tests/doubles/complaint.hpp"
 #include "tests/doubles/matchers.hpp"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/numbers/angle.hpp"
+#include "engine/text/list_text.hpp"
 #include "experiments/judging/innovation_rows.hpp"
 #include "experiments/judging/read_rows.hpp"
 #include "experiments/judging/truth_path.hpp"
