@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/render/page/page.hpp"
 
+#include "analysis/render/page/first_paragraph.hpp"
 #include "analysis/render/page/html.hpp"
 #include "analysis/render/tables/files.hpp"
 #include "analysis/study/drive_facts.hpp"
@@ -8,6 +9,7 @@
 #include "analysis/study/reference_sums.hpp"
 #include "analysis/study/verdict_table.hpp"
 #include "engine/errors.hpp"
+#include "engine/text/list_text.hpp"
 #include "engine/text/number_text.hpp"
 #include "engine/text/wrapped_text.hpp"
 
@@ -205,8 +207,6 @@ std::string title_line(const StudyAnalysis& study) {
          " &middot; seed " + std::to_string(study.seed) + " &middot; " + html_escape(study.file);
 }
 
-constexpr const char* kCellIs = " (a cell is a filter in one setting)";
-
 }  // namespace
 
 void write_page(const StudyAnalysis& study, const std::vector<Section>& sections,
@@ -235,147 +235,6 @@ std::string markdown_table(const TextTable& table) {
   const std::size_t hidden = table.rows.size() - shown;
   return hidden == 0 ? markdown : markdown + "\n... and " + std::to_string(hidden) + " rows more\n";
 }
-
-namespace {
-
-/// What was studied. `cell_is` explains what a cell is, or is empty where that has been said.
-std::string studied(const StudyAnalysis& study, const char* cell_is) {
-  const std::string n = std::to_string(study.cells.size());
-  const std::string runs = std::to_string(study.runs_here);
-  const std::string time = fixed_seconds(study.duration);
-  const std::string judged = "; its errors are compared with the covariance that it reports.";
-  if (study.imported.are_innovations()) {
-    return "The innovations of another program in " + runs + (runs == "1" ? " run" : " runs") +
-           " of " + time + " are compared with the covariance that it reports.";
-  }
-  if (study.imported.is_imported()) {
-    return "Another program estimated " + runs + " runs of " + time +
-           (study.cells.size() == 1 ? "" : " in each of " + n + " cells") + judged;
-  }
-  const std::string cells =
-      (study.cells.size() == 1 ? "One cell" : "Each of " + n + " cells") + cell_is + " estimates ";
-  if (study.has_truth) {
-    return cells +
-           (runs == "1" ? "one simulated drive of "
-                        : "the same " + runs + " simulated drives of ") +
-           time + " among " + std::to_string(study.beacons) + " landmarks" + judged;
-  }
-  if (study.own_drives > 0) return cells + runs + " recorded drives of up to " + time + ".";
-  return cells + "one recorded drive of " + time +
-         (runs == "1" ? " once." : ", " + runs + " times.");
-}
-
-}  // namespace
-
-std::string studied_sentence(const StudyAnalysis& study) { return studied(study, kCellIs); }
-
-namespace {
-
-/// The ratios of some cells, as far as they have one: " (NEES ratio 0.99 to 1.01)".
-std::string ratios_in_words(const std::vector<const CellAnalysis*>& cells,
-                            const StudyAnalysis& study) {
-  std::vector<double> ratios;
-  for (const CellAnalysis* cell : cells) {
-    const double ratio = cell->verdict.ratio_estimate();
-    if (std::isfinite(ratio)) ratios.push_back(ratio);
-  }
-  if (ratios.empty()) return "";
-  const auto [least, most] = std::ranges::minmax(ratios);
-  return std::string(" (") + study.imported.name_of_ratio() + " " + compact(least) +
-         (ratios.size() == 1 ? "" : " to " + compact(most)) + ")";
-}
-
-std::string labels_of(const std::vector<const CellAnalysis*>& cells) {
-  std::string labels;
-  for (const CellAnalysis* cell : cells) labels += (labels.empty() ? "" : ", ") + cell->label;
-  return labels;
-}
-
-/// "2 are consistent within 1.1: smoother, dead_reckoning (NEES ratio 0.99 to 1.01)"; of a study of
-/// one cell: "ekf_slam is optimistic (NEES ratio 1.17)".
-std::string answered_in_words(const std::vector<const CellAnalysis*>& cells,
-                              const StudyAnalysis& study) {
-  const Verdict& verdict = cells.front()->verdict;
-  const std::string answer =
-      answer_in_words(verdict) +
-      (verdict.answer == Answer::consistent ? " within " + engine::exact_text(verdict.within) : "");
-  const std::string ratios = ratios_in_words(cells, study);
-  if (study.cells.size() == 1) return cells.front()->label + " is " + answer + ratios;
-  const std::string n = cells.size() == study.cells.size() ? "all" : std::to_string(cells.size());
-  return n + (cells.size() == 1 ? " is " : " are ") + answer + ": " + labels_of(cells) + ratios;
-}
-
-/// "Of 3 cells (a cell is ...), "; nothing if there is one.
-std::string of_cells(const StudyAnalysis& study) {
-  if (study.cells.size() == 1) return "";
-  return "Of " + std::to_string(study.cells.size()) + " cells" + kCellIs + ", ";
-}
-
-/// How many cells have which answer, and which they are; empty for bounds, which are no estimates.
-std::string answers_found(const StudyAnalysis& study) {
-  const auto has_bound = [](const CellAnalysis& cell) { return has_bounds(cell.settings); };
-  if (std::ranges::any_of(study.cells, has_bound)) return "";
-  std::map<std::pair<Answer, std::string>, std::vector<const CellAnalysis*>> found;
-  std::vector<const CellAnalysis*> untested;
-  for (const CellAnalysis& cell : study.cells) {
-    if (cell.verdict.answer == Answer::untested) {
-      untested.push_back(&cell);
-    } else {
-      found[{cell.verdict.answer, answer_in_words(cell.verdict)}].push_back(&cell);
-    }
-  }
-  if (found.empty()) return "";
-  std::string text;
-  for (const auto& [answer, cells] : found) {
-    text += (text.empty() ? "" : "; ") + answered_in_words(cells, study);
-  }
-  if (!untested.empty()) text += "; not tested: " + labels_of(untested);
-  return of_cells(study) + text + ". Where the " + study.imported.name_of_ratio() +
-         " is 1, squared errors are as large as the filter claims.";
-}
-
-/// Which cells are nearest to the leading reference of a recorded drive and farthest from it, in
-/// the mean over runs; empty if fewer than two can be compared, if any has failed runs, which are
-/// at no distance, or if all are equally far as printed.
-std::string distances_found(const StudyAnalysis& study) {
-  if (study.references.empty() || study.own_drives > 0 || study.has_failures()) return "";
-  const JudgedReference& reference = study.references.front();
-  const auto score =
-      reference.compares_raw() ? &ReferenceScores::rms : &ReferenceScores::aligned_rms;
-  std::map<double, std::vector<const CellAnalysis*>> found;
-  for (const CellAnalysis& cell : study.cells) {
-    const double mean = cell.get<ReferenceAnalyses>().front().over_runs(score).summary.mean;
-    if (std::isfinite(mean)) found[mean].push_back(&cell);
-  }
-  if (found.empty() || compact(found.begin()->first) == compact(found.rbegin()->first)) return "";
-  const auto at = [&](const std::string& distance) {
-    std::vector<const CellAnalysis*> cells;
-    for (const auto& [mean, of_mean] : found) {
-      if (compact(mean) == distance) cells.insert(cells.end(), of_mean.begin(), of_mean.end());
-    }
-    return labels_of(cells) + (cells.size() == 1 ? " is" : " are");
-  };
-  const std::string least = compact(found.begin()->first), most = compact(found.rbegin()->first);
-  return of_cells(study) + at(least) + " the nearest to the reference " + reference.name +
-         ", with an RMS distance of " + least + " m" +
-         (study.runs_here == 1 ? "" : " in the mean over runs") +
-         (reference.compares_raw() ? "" : " after the best rigid alignment of each") + ", and " +
-         at(most) + " the farthest, with " + most + " m.";
-}
-
-/// What was found, as far as it can be said in a sentence; innovations have more than one answer.
-std::string found_sentences(const StudyAnalysis& study) {
-  if (study.imported.are_innovations()) return "";
-  return study.has_truth ? answers_found(study) : distances_found(study);
-}
-
-/// What a page begins with: what was found and what was studied.
-std::string first_paragraph(const StudyAnalysis& study) {
-  const std::string found = found_sentences(study);
-  return found.empty() ? studied_sentence(study) : found + " " + studied(study, "");
-}
-
-}  // namespace
 
 std::string markdown_page(const StudyAnalysis& study, const std::vector<Section>& sections,
                           const TextPairs& provenance) {
@@ -431,7 +290,7 @@ Section missing_section(const std::vector<Section>& sections) {
   Section missing{"missing", "What this page cannot show"};
   for (const Section& section : sections) {
     if (section.has_content() || section.blocks.empty()) continue;
-    missing.summary += (missing.summary.empty() ? "" : ", ") + section.title;
+    append_part(missing.summary, section.title);
     missing.add_html(html_paragraphs(notes_of(section)));
   }
   return missing;

@@ -16,8 +16,6 @@ namespace montecarta::analysis {
 
 // These functions make the parts of a report that belong to no metric.
 
-/// A sentence on the subject of the study, for a reader who knows nothing about it.
-std::string studied_sentence(const StudyAnalysis& study);
 /// The page's heading: the name of the study, and how much of it the file holds.
 Section title_section(const StudyAnalysis& study);
 /// The failed runs, with reasons.

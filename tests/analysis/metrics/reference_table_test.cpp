@@ -5,6 +5,7 @@
 #include "analysis/run/reference_scores.hpp"
 #include "analysis/study/reference_sums.hpp"
 #include "analysis/study/registry.hpp"
+#include "analysis/verdict/drive_verdict.hpp"
 #include "engine/records/h5.hpp"
 #include "tests/analysis/recorded_result.hpp"
 #include "tests/analysis/reported.hpp"
@@ -90,6 +91,26 @@ TEST(ReferencePage, BeginsWithTheNearestCellByTheDistanceThatIsCompared) {
                 "to the reference gps, with an RMS distance of 0.670 m"));
   study.references.front().has_errors = false;
   EXPECT_THAT(markdown_page(study, {}, {}), HasSubstr("ekf\\_slam is the nearest to"));
+}
+
+TEST(ReferencePage, BeginsWithTheVerdictByTheReferenceIfItsErrorsAreKnown) {
+  StudyAnalysis study = shifted_study(true);
+  study.has_truth = false;
+  const auto judge = [&](CellAnalysis& cell, Answer answer, double ratio) {
+    DriveConsistency drive;
+    drive.answer = answer;
+    drive.mean.blocks[static_cast<std::size_t>(drive.mean.leading)].mean = ratio;
+    cell.findings.put(DriveConsistencies{drive});
+  };
+  judge(study.cells[0], Answer::optimistic, 2.5);
+  judge(study.cells[1], Answer::consistent, 1.02);
+  EXPECT_THAT(markdown_page(study, {}, {}),
+              HasSubstr("\n\nOf 2 cells (a cell is a filter in one setting), judged by gps, 1 is "
+                        "consistent within 1.1: smoother (NEES / expected 1.02); 1 is optimistic: "
+                        "ekf\\_slam (NEES / expected 2.50). Of these, smoother is the nearest"));
+  study.cells.resize(1);
+  EXPECT_THAT(markdown_page(study, {}, {}),
+              HasSubstr("\n\nJudged by gps, ekf\\_slam is optimistic (NEES / expected 2.50). One"));
 }
 
 TEST(ReferencePage, NamesNoNearestCellAmongEqualOnes) {
