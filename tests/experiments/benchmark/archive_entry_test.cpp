@@ -15,6 +15,8 @@
 namespace montecarta::experiments {
 namespace {
 
+namespace fs = std::filesystem;
+
 TEST(ArchivedScore, HasSixteenBitsAndIsArchivedAsItself) {
   for (const double score : {1.0, 1.0 / 3.0, 0.00123456789, 98765.4321, 3e-30, 0.0}) {
     EXPECT_NEAR(archived(score), score, score * std::ldexp(1.0, -16));
@@ -102,7 +104,7 @@ TEST(ShippedArchive, IsSmallAndOfTheWorldsThatAreShipped) {
   for (const ArchiveEntry& entry : read_entries(shipped_archive())) {
     const std::string name = entry.world + "/" + entry.label;
     const std::uintmax_t size =
-        std::filesystem::file_size(path_of_entry(shipped_archive(), entry.world, entry.label));
+        fs::file_size(path_of_entry(shipped_archive(), entry.world, entry.label));
     EXPECT_LE(size, 30'000U) << name;
     all += size;
     const std::string text = resolved_text(benchmark_study(entry.world, entry.cell, entry.runs));
@@ -111,6 +113,16 @@ TEST(ShippedArchive, IsSmallAndOfTheWorldsThatAreShipped) {
   }
   EXPECT_GT(all, 0U);
   EXPECT_LE(all, 8'000'000U);
+}
+
+TEST(ShippedArchive, HoldsEveryShippedFilterInEveryWorldThatSuitsIt) {
+  for (const std::string& world : benchmark_worlds()) {
+    for (const BenchmarkFilter& filter : benchmark_filters()) {
+      if (!suits(world, filter.cell)) continue;
+      EXPECT_TRUE(fs::exists(path_of_entry(shipped_archive(), world, filter.label)))
+          << world << "/" << filter.label;
+    }
+  }
 }
 
 }  // namespace
