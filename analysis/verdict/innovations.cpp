@@ -120,6 +120,7 @@ void LaggedProducts::add(std::span<const double> numbers) {
 }
 
 std::size_t LaggedProducts::lags(std::uint64_t runs) const {
+  if (runs == 0) return 0;
   const auto of_run = static_cast<std::size_t>(products_[0].n / static_cast<double>(runs));
   return std::min(products_.size() - 1, of_run / 4);
 }

@@ -123,6 +123,9 @@ TEST(Innovations, OfManyDegreesOfFreedomCountNoMoreThanOfFew) {
   EXPECT_NEAR(found.autocorrelation[0], 0.271385411111594, 1e-12);
 }
 
+// A quarter of no numbers in no runs is no number, and as an integer another one on each processor.
+TEST(Innovations, OfNoRunAreTestedAtNoLag) { EXPECT_EQ(LaggedProducts(100).lags(0), 0U); }
+
 TEST(Innovations, OfTwoScansAreNotTested) {
   const Innovations found = innovations_of_run({1.0, 3.0}, {2, 2});
   EXPECT_EQ(found.worst_lag, 0u);
